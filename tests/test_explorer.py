@@ -514,7 +514,8 @@ def test_a_viscoelastic_body_is_chosen_and_its_lists_are_typed_with_commas():
 def test_an_empty_field_of_a_choice_says_the_number_that_it_stands_for(subtests):
     for name in choices.CHOICES:
         with subtests.test(name=name):
-            for value, (_, _, optional) in choices.CHOICES[name].options.items():
+            for value, option in choices.CHOICES[name].options.items():
+                optional = option.optional
                 if value in ("", "table") or not optional:
                     continue
                 shown = choices.choose(start_of(name), name, value)
@@ -1028,6 +1029,15 @@ def test_a_case_whose_shape_stands_in_a_file_is_shown_and_its_shape_drawn_from_a
     assert words == "Shape of the body: measured shape" and (chart["x"]["unit"], chart["y"]["unit"]) == ("µm", "µm")
     assert height == pytest.approx(x**2 / 20e3, abs=2e-4)
     check_link_and_saved_case(shown)
+    assert "profile" not in others(choices.choose(shown, "shape", "cylinder"))
+
+
+def test_a_shape_that_moves_the_other_way_does_so_until_it_is_a_cylinder():
+    lip = choices.choose(START, "shape", "lip")
+    back = lip.edited({}, lip.tables | {"profile": lip.tables["profile"] | {"reversed": True}})
+    land = choices.choose(back, "shape", "land")
+    assert land.contact.profile == sb.profiles.Land("0.4 mm", "1 mm", reversed=True)
+    assert "profile" not in others(choices.choose(land, "shape", "cylinder"))
 
 
 def test_no_shape_is_drawn_of_a_cylinder():

@@ -10,7 +10,7 @@ import json
 import math
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -40,6 +40,7 @@ class Option(NamedTuple):
     label: str  # What it is called
     needed: tuple[str, ...] = ()  # Keys that it needs
     optional: tuple[str, ...] = ()  # Keys that it may have
+    unshown: tuple[str, ...] = ()  # Keys that it may have and no field shows
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -85,7 +86,8 @@ def _of_kind(name: str) -> Choice:
         words = "Newtonian" if each == "newtonian" else each if law is None else each.replace("-", " ")
         keys = (*numbers_of(law), *(shapes if hasattr(law, "base") else ()))
         needed = needed_of(law)
-        options[each] = Option(getattr(law, "label", words), needed, tuple(key for key in keys if key not in needed))
+        others = tuple(own.name for own in fields(law) if own.name not in keys) if is_dataclass(law) else ()
+        options[each] = Option(getattr(law, "label", words), needed, tuple(key for key in keys if key not in needed), others)
     # Which body it is, its numbers say.
     return Choice(names.get(name, name), kind.label, kind.table, "" if name == "solid" else kind.key, options)
 
@@ -240,7 +242,8 @@ def choose(now: Inputs, name: str, value: str) -> Inputs:
         load = math.pi**3 * p**3 * R**2 / (6 * E**2) if value == "point" else math.pi * R * p**2 / E
         numbers = {"load": load} | ({"speed": before.speed} if value == "line" else {})
         return _with(now, tables | {"contact": contact, "solver": solver}, **numbers)
-    kept = {key: each for key, each in tables.get(choice.where, {}).items() if key not in choice.options[old].keys}
+    gone = {*choice.options[old].keys, *choice.options[old].unshown} - {*choice.options[value].unshown}
+    kept = {key: each for key, each in tables.get(choice.where, {}).items() if key not in gone}
     if choice.key:
         kept |= {choice.key: value}
     if value == choice.first:
