@@ -356,6 +356,7 @@ def test_the_version_is_the_same_wherever_it_is_written():
     version = importlib.metadata.version("stribeck")
     assert f"\nversion: {version}\n" in citation
     assert f"\n## {version} " in changelog
+    assert f"version = {{{version}}}" in (PACKAGE.parents[1] / "docs" / "citing.md").read_text()
 
 
 def test_numbers_of_the_numerical_core_stand_in_its_settings(load_benchmark):
