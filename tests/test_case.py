@@ -314,8 +314,8 @@ def number_in_comments(path, name):
 
 
 def test_the_examples_are_there():
-    cylinders = ["lip_seal", "nitrile_seal", "pdms_cylinder", "pdms_fit", "rod_seal", "wiper_blade", "wiper_edge"]
-    assert [path.stem for path in CYLINDERS] == [*cylinders, "worn_rod_seal"]
+    cylinders = ["lip_seal", "nitrile_seal", "pdms_cylinder", "pdms_fit", "reciprocating_cylinder", "rod_seal"]
+    assert [path.stem for path in CYLINDERS] == [*cylinders, "wiper_blade", "wiper_edge", "worn_rod_seal"]
     assert {"pdms_ball", "contact_lens"} <= {path.stem for path in BALLS}
 
 

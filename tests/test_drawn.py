@@ -82,6 +82,15 @@ def film_of_a_parabola():
     return sb.asymptotics.film_of_pressure(1e-3 * x, 1e6 * pressure, modulus=7e6, viscosity=0.05, speed=0.1)
 
 
+def loop_fit(contact, path):
+    motion = sb.motions.Sine(0.02, 0.5)
+    found = sb.stroke(contact, motion, steps=16)
+    last = found.last_cycle
+    rows = zip(found.time[last] - found.time[last][0], found.friction[last], strict=True)
+    path.write_text("time [s],friction\n" + "".join(f"{t},{friction}\n" for t, friction in rows))
+    return sb.bench.fit_loop(path, contact, motion, free=["boundary_friction"], steps=16)
+
+
 @pytest.fixture(scope="module")
 def parts(results, tmp_path_factory):
     """Return what results are made of, and what belongs to no contact alone."""
@@ -105,6 +114,7 @@ def parts(results, tmp_path_factory):
         "raw curve": sb.bench.read(EXAMPLES / "rig_raw.csv"),
         "master curve": sb.master_curve(sorted(EXAMPLES.glob("joint/oil_*.csv")), EXAMPLES / "joint" / "case.toml"),
         "stroke": sb.stroke(results["solution"].contact, sb.motions.Sine(0.05, 1.0), steps=16, cycles=1),
+        "loop fit": loop_fit(results["solution"].contact, path.with_name("loop.csv")),
         "flow curve": sb.fluids.flow_curve(RATE, 2.0 * (1 + (5 * RATE) ** 2) ** -0.3),
     }
 
@@ -126,6 +136,7 @@ OTHERS = (
     "raw curve",
     "master curve",
     "stroke",
+    "loop fit",
 )
 
 

@@ -144,8 +144,8 @@ class LoopFit(Exported, Told, ByValue):
             "fitted_friction_error": ("row", self.friction_error, "1", "estimated error of the fitted friction coefficient"),
         }
         for each in self.inputs:
-            columns[each.name] = ((), each.value, each.unit, "fitted value")
-            columns[f"{each.name}_standard_error"] = ((), each.standard_error, "1", "standard error of its logarithm")
+            columns[each.name] = ((), each.value, each.unit or "1", f"fitted {each.label}")
+            columns[f"{each.name}_standard_error"] = ((), each.standard_error, "1", f"standard error of ln({each.label})")
         said = {"outcome": self.outcome.value, "notes": " ".join(self.notes)}
         return columns, {}, {"title": "Inputs fitted to a friction loop", **said}
 
