@@ -24,7 +24,7 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.path.hermite_path import HermitePath
-from stribeck.solver.path.line_states import POSITION
+from stribeck.solver.path.line_states import COLUMNS, POSITION
 from stribeck.solver.path.path import SolvedPath
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
@@ -33,7 +33,6 @@ from stribeck.solver.solve_error import SolveError, describe
 
 __all__ = ["COLUMNS", "CurvePoint", "LineSource", "PathSource"]
 
-COLUMNS = (*ALL_NAMES, "minimum_position")  # Columns of a path by name
 MAX_STATE_RTOL = 1e-6  # Largest rtol of a landmark's state unless another is asked for: landmarks are a curve's headline
 MESH_LOG_DISTANCE = 0.5  # Distance of ln(value) up to which the mesh of one landmark's state is tried at another
 FIELD_LOG_STEP = 1e-3  # Step of ln(value) in differences of what follows from fields between states

@@ -18,10 +18,10 @@ from stribeck.equations.state import State
 from stribeck.numerics.settings import EPSILON, HALF_DIGITS
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import ALL_NAMES, GROUPS
+from stribeck.quantities.outputs import GROUPS
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.path.hermite_path import HermitePath, Knot
-from stribeck.solver.path.line_states import POSITION, LineStates, numbers_of
+from stribeck.solver.path.line_states import COLUMNS, POSITION, LineStates, numbers_of
 from stribeck.solver.refinement import RefinedState
 
 __all__ = ["LineKnots"]
@@ -31,7 +31,7 @@ class LineKnots(LineStates):
     """The states of the line at the groups ``groups_at(s)``, each from its neighbours."""
 
     path = HermitePath
-    names = (*ALL_NAMES, "minimum_position")
+    names = COLUMNS
     shares = (ROW["contact_load_share"], ROW["fluid_load_share"])
     summands = (ROW["offset"], ROW["offset"])  # the sum of no two is smoother than both
 

@@ -17,6 +17,7 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES
 from stribeck.solver.refinement import RefinedState
 
+COLUMNS = (*ALL_NAMES, "minimum_position")  # Columns of a path by name
 POSITION = len(ALL_NAMES)  # Column of the minimum gap's position, after those of the observables
 UNCONTROLLED_COLUMNS = [POSITION, ROW["exit_position"], ROW["reformation_position"]]
 SHARE_COLUMNS = [ROW[name] for name in ABSOLUTE]
