@@ -1,12 +1,13 @@
-"""Write the table of limits into docs/checks.md, from the constants by which ``stribeck.checks`` judges.
+"""Write the tables of docs/checks.md: the limits by which ``stribeck.checks`` judges, and what helps beyond them.
 
-``python docs/limits.py`` rewrites the table between the marks of the page; ``tests/test_docs.py`` compares it.
+``python docs/limits.py`` rewrites the tables between the marks of the page; ``tests/test_docs.py`` compares them.
 """
 
 import re
 from pathlib import Path
 
 from stribeck.checks import body, film, law
+from stribeck.checks.instead import INSTEAD
 from stribeck.checks.table import ROWS
 from stribeck.contacts.cut_off import FAR_FILM_MIN_RADIUS
 from stribeck.contacts.notes import (
@@ -20,7 +21,6 @@ from stribeck.contacts.notes import (
 from stribeck.quantities.formats import format_si
 
 PAGE = Path(__file__).parent / "checks.md"
-MARKED = re.compile(r"(<!-- limits -->\n\n).*?(\n<!-- end of limits -->)", re.DOTALL)
 HEAD = ("Check", "Value", "Fine up to", "Outside beyond", "Why, and what to do")
 
 
@@ -130,19 +130,31 @@ def rows():
     }  # fmt: skip
 
 
-def table():
-    """Return the table, a row for each check in their order."""
+def limits():
+    """Return the table of limits, a row for each check in their order."""
     found = rows()
-    lines = [HEAD, ("---",) * len(HEAD), *((row.name, *found[row.name]) for row in ROWS)]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+    return _table(HEAD, ((row.name, *found[row.name]) for row in ROWS))
+
+
+def instead():
+    """Return the table of what helps, a row for each check that names something."""
+    geometries = {None: "", "line": " (cylinder)", "point": " (ball)"}
+    found = ((row.name + geometries[each.geometry], each.sentence) for row in ROWS for each in INSTEAD.get(row.name, ()))
+    return _table(("Check", "What helps"), found)
+
+
+def _table(head, lines):
+    return "".join(f"| {' | '.join(line)} |\n" for line in (head, ("---",) * len(head), *lines))
 
 
 def with_table(text):
-    """Return the text of the page with the table of now."""
-    changed, count = MARKED.subn(lambda found: found[1] + table() + found[2], text)
-    if count != 1:
-        raise ValueError(f"{PAGE.name} has {count} places for the table of limits")
-    return changed
+    """Return the text of the page with the tables of now."""
+    for name, table in (("limits", limits()), ("what helps", instead())):
+        marked = re.compile(rf"(<!-- {name} -->\n\n).*?(\n<!-- end of {name} -->)", re.DOTALL)
+        text, count = marked.subn(lambda found, table=table: found[1] + table + found[2], text)
+        if count != 1:
+            raise ValueError(f"{PAGE.name} has {count} places for the table of {name}")
+    return text
 
 
 if __name__ == "__main__":

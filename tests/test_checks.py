@@ -464,12 +464,42 @@ def test_what_a_note_of_a_curve_doubts_its_checks_doubt():
         assert each.law_in_doubt.any() and any(check.of_law and check.verdict == "doubtful" for check in found)
 
 
-def test_a_check_names_the_command_or_the_table_that_helps(subtests):
-    for facts, name, words in (
-        ({"stroke": "1 mm"}, "stroke over a", "stribeck stroke"),
-        ({"loss_tangent": 1.0}, "loss tangent", "[solid] master_curve"),
-    ):
+# By the name of a check a contact that is outside it, with the facts that show it.
+OUTSIDE = {
+    "Hertz pressure": (STEEL, {}),
+    "stiffness": (STEEL, {}),
+    "contact width a/R": (TRUE.replace(modulus="100 kPa", load="500 N/m"), {}),
+    "shape": (TRUE.replace(profile=sb.profiles.Lip(0.8, 0.8, 1e-4), load="1 kN/m"), {}),
+    "adhesion": (TRUE, {"work_of_adhesion": 100.0}),
+    "pores": (TRUE, {"diffusivity": 1e-9}),
+    "layer a/thickness": (TRUE, {"layer_thickness": 1e-6}),
+    "loss tangent": (TRUE, {"loss_tangent": 1.0}),
+    "rms slope of the roughness": (TRUE, {"rms_slope": 2.0}),
+    "stroke over a": (TRUE, {"stroke": 1e-3}),
+    "viscous heating": (TRUE, {"thermal_thinning": 1e9}),
+    "contact law at the centre": (TRUE.replace(load=600.0, speed="1 um/s"), {}),
+    "shear rate": (TRUE, {"thinning_rate": 1.0}),
+    "supply h*/(2 supply)": (TRUE, {"supply_film": 1e-9}),
+    "film against molecules": (TRUE, {"molecular_size": 1e-3}),
+    "inertia": (TRUE, {"density": 1e12}),
+}
+OF_STATES = list(OUTSIDE)[list(OUTSIDE).index("contact law at the centre") :]
+HELP = re.compile(
+    r"FEBio|Tamaas|OpenFOAM|GaPFlow|LAMMPS|\[solid\]|\[fluid\]|stribeck stroke|Persson's law|[Gg]ive the viscosity"
+)
+
+
+def test_a_check_that_is_outside_names_what_helps(subtests):
+    state = sb.solve(TRUE, rtol=1e-4)
+    for name, (contact, facts) in OUTSIDE.items():
         with subtests.test(name=name):
-            assert words in sb.check(TRUE, **facts)[name].sentence
-            fine = {"stroke": "10 m"} if "stroke" in facts else {"loss_tangent": 0.01}
-            assert words not in sb.check(TRUE, **fine)[name].sentence
+            effort = "state" if name in OF_STATES else "contact"
+            found = checks_of(Subject(contact, facts, solved=state if contact is TRUE else None), effort)[name]
+            assert found.verdict == "outside" and HELP.search(found.sentence), found.sentence
+    fine = checks_of(Subject(TRUE, {"stroke": 10.0, "loss_tangent": 0.01, "layer_thickness": 1.0}), "contact")
+    assert not any(HELP.search(each.sentence) for each in fine)
+    doubtful = checks_of(Subject(TRUE, {"stroke": 500 * TRUE.hertz.half_width, "work_of_adhesion": 0.3}), "contact")
+    assert "stribeck stroke" in doubtful["stroke over a"].sentence  # solved here
+    assert doubtful["adhesion"].verdict == "doubtful" and "Tamaas" not in doubtful["adhesion"].sentence
+    ball = checks_of(Subject(GEL, {"stroke": 1e-6}), "contact")["stroke over a"]
+    assert "GaPFlow" in ball.sentence and "stribeck stroke" not in ball.sentence

@@ -239,9 +239,6 @@ def shape(subject: Subject) -> Check | None:
     return Check("shape", steepest, MAX_CONTACT_SLOPE, verdict, about + end)
 
 
-LAYER_ADVICE = " Give layer_thickness in [solid]: the layer is then solved."
-
-
 def layer(subject: Subject) -> Check | None:
     """Return the check of the layer: half-width over its thickness; None where the thickness is not known."""
     thickness = subject.fact("layer_thickness")
@@ -254,9 +251,8 @@ def layer(subject: Subject) -> Check | None:
         return Check("layer a/thickness", ratio, math.inf, "fine", "The finite thickness of the layer is part of the model.")
     meanings: dict[Verdict, str] = {
         "fine": "The layer is as good as a half-space.",
-        "doubtful": "The layer feels its substrate: the contact is narrower and stiffer than computed." + LAYER_ADVICE,
-        "outside": "The layer is thinner than the contact is wide: the half-space does not apply, and films differ."
-        + LAYER_ADVICE,
+        "doubtful": "The layer feels its substrate: the contact is narrower and stiffer than computed.",
+        "outside": "The layer is thinner than the contact is wide: the half-space does not apply, and films differ.",
     }
     begin = f"The contact is {ratio:.2g} of the thickness wide to each side. "
     return check_against_limits("layer a/thickness", ratio, LAYER_RATIO_FINE, LAYER_RATIO_OUTSIDE, begin, meanings)
@@ -271,13 +267,10 @@ def loss(subject: Subject) -> Check | None:
     frequency = contact.speed / contact.hertz.half_width
     if subject.models("solid") and getattr(getattr(contact, "solid", None), "uses_speed", False):
         return Check("loss tangent", tangent, LOSS_TANGENT_FINE, "fine", "The viscoelasticity of the solid is modelled.")
-    is_line = contact.groups.geometry == "line"
-    advice = " Give E' and E'' over the frequency as [solid] master_curve: it is then solved." if is_line else ""
     meanings: dict[Verdict, str] = {
         "fine": "hysteresis is small.",
-        "doubtful": "hysteresis adds friction that is not modelled." + advice,
-        "outside": "hysteresis adds friction and shifts the contact, which is not modelled; the solid is not elastic."
-        + advice,
+        "doubtful": "hysteresis adds friction that is not modelled.",
+        "outside": "hysteresis adds friction and shifts the contact, which is not modelled; the solid is not elastic.",
     }
     begin = f"The loss tangent is {tangent:.2g} (take it at U/a = {frequency:.2g} 1/s): "
     return check_against_limits("loss tangent", tangent, LOSS_TANGENT_FINE, LOSS_TANGENT_OUTSIDE, begin, meanings)

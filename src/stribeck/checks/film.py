@@ -163,8 +163,6 @@ def stroke(subject: Subject) -> Check | None:
         "doubtful": "near its ends the film lags behind the speed, and friction is off by tens of per cent.",
         "outside": "the film of the fast phase stays at its ends. A curve at steady speeds is not its friction.",
     }[verdict]
-    if verdict != "fine" and subject.contact.groups.geometry == "line":
-        meaning += " stribeck stroke solves the film over the stroke."
     about = f"The stroke is {ratio:.3g} times the {subject.contact.WIDTH}: "
     return Check("stroke over a", ratio, STROKE_FINE, verdict, about + meaning, at_least=True)
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from stribeck.cases.facts import fact_values
 from stribeck.checks import body, film, law
 from stribeck.checks.check import Check, Checks
+from stribeck.checks.instead import with_what_helps
 from stribeck.checks.subject import Subject
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition
@@ -113,7 +114,7 @@ def checks_of(subject: Subject, effort: Effort = "tail") -> Checks:
             unsolved.append(f"{row.name}: {problem}")
             continue
         if made is not None:
-            found.append(made)
+            found.append(with_what_helps(made, row.name, subject.contact.groups.geometry))
         elif row.missing:
             missing[row.name] = row.missing
     return Checks(tuple(found), tuple(unsolved), missing)
