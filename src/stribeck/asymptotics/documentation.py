@@ -1,28 +1,43 @@
 """Text that the docstrings of formulas share: the descriptions of their arguments and values, written once.
 
-The docstring of a formula states its value, equation and error.  Arguments, value and exceptions that many share are filled
-in from the tables here; a section or an argument that a formula describes itself is left as it is.
+The docstring of a formula states its equation and what is special about it.  Arguments, value, exceptions, range, error and
+source are filled in from its signature, its table entry, and the tables here; an argument that a formula describes itself is
+left as it is.
 """
 
 from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from typing import Any
+from typing import Any, get_args
 
 from stribeck.quantities import docstrings
 
-ARGUMENTS: dict[str, tuple[str, str]] = {
-    "x": ("float or array_like", "Positions [a]; broadcast with the groups."),
-    "terms": ("int", "1, or 2 for the term in brackets too."),
-    "beta": ("float", "Coefficient of the contact law [-]."),
-    "boundary_friction": ("float", "Friction coefficient of the dry contact [-]."),
-    "slope": ("float or array_like", "a/R [-]."),
+ARGUMENTS: dict[str, str] = {
+    "x": "Positions [a]; broadcast with the groups.",
+    "terms": "1, or 2 for the term in brackets too.",
+    "beta": "Coefficient of the contact law [-].",
+    "boundary_friction": "Friction coefficient of the dry contact [-].",
+    "slope": "a/R [-].",
+    "share": "Part of the load on the fluid [-], between 0 and 1.",
+    "form": "Form of :func:`phi`.",
+    "printed": "As the article prints it, see :func:`fluid_load_share`.",
+    "definition": "The force on the flat; or with the moment of the fluid pressure, by the definition of the article.",
+    "viscous": "The same definitions, or without viscous friction.",
+    "wetted_radius": "Where the liquid ends [a]; by default that of a whole sphere, :mod:`stribeck.contacts.cut_off`.",
+    "with_edges": "Whether with the terms of the edges.",
 }
-"""Type and description of the arguments that several formulas have."""
+"""Description of the arguments that several formulas have."""
+
+KINDS: dict[str, str] = {
+    "Value": "float or array_like",
+    "float | Array": "float or array_like",
+    "float | None": "float, optional",
+}
+"""What annotations are called; a choice of words is listed, and the others stand as they are."""
 
 VALUES: dict[str, str] = {
-    "pressure": "Pressure [p_Hz]",
+    "pressure": "Pressure [p_Hz]; zero outside the contact",
     "fluid_pressure": "Fluid pressure [p_Hz]",
     "contact_pressure": "Contact pressure [p_Hz]",
     "gap": "Gap [u_Hz]",
@@ -42,6 +57,12 @@ VALUES: dict[str, str] = {
 }
 """Value and scale of what formulas predict."""
 
+OFFSETS = {
+    "line": ", in the gauge ln(abs(x-y)/a)",
+    "point": ": height of the apex over the undeformed surface",
+}
+"""What the offset of each geometry is counted from."""
+
 ERRORS: dict[str, str] = {
     "terms": "If ``terms`` is neither 1 nor 2.",
     "form": "If the form is unknown.",
@@ -55,12 +76,30 @@ ERRORS: dict[str, str] = {
 """When a formula refuses an argument."""
 
 
-def completed(function: Callable[..., Any], predicts: str, uses: tuple[str, ...], undefined: str) -> str:
-    """Return the docstring of a formula with the sections that it leaves to the tables here."""
-    names = list(inspect.signature(function).parameters)
+def completed(
+    function: Callable[..., Any], predicts: str, uses: tuple[str, ...], geometry: str, undefined: str, evidence: str
+) -> str:
+    """Return the docstring of a formula with all that its table entry and the tables here say of it."""
     groups = "all three groups" if len(uses) == 3 else " and ".join(f"``{name}``" for name in uses)
     states = "Groups\n    " + (f"Uses {groups} [-]; arrays broadcast." if uses else "Any; the answer takes their shape.")
-    common = {"groups": states} | {name: f"{kind}\n    {words}" for name, (kind, words) in ARGUMENTS.items()}
+    common = {"groups": states}
+    names = inspect.signature(function).parameters
+    for name, argument in names.items():
+        words = ARGUMENTS.get(name, "")
+        if name == "x" and geometry == "point":
+            words = f"Positions, or distances from the middle{words.removeprefix('Positions')}"
+        if name != "groups":
+            common[name] = f"{_kind(function, argument)}\n    {words}"
     refused = [f"InputError\n    {ERRORS[name]}" for name in names if name in ERRORS]
-    value = f"float or ndarray\n    {VALUES[predicts]}" + (f"; nan {undefined}." if undefined else ".")
-    return docstrings.complete_docstring(function, common, value, "\n".join(refused))
+    value = "float or ndarray\n    " + VALUES[predicts]
+    value += OFFSETS[geometry] if predicts == "offset" else ""
+    value += f"; nan {undefined}." if undefined else "."
+    return docstrings.complete_docstring(function, common, value, "\n".join(refused), evidence)
+
+
+def _kind(function: Callable[..., Any], argument: inspect.Parameter) -> str:
+    """Return the type of an argument in the words of a docstring."""
+    kind = KINDS.get(str(argument.annotation), str(argument.annotation))
+    choices = get_args(function.__globals__.get(kind))
+    quoted = ", ".join(f'"{choice}"' for choice in choices)
+    return f"{{{quoted}}}" if choices else kind

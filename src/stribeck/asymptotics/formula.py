@@ -9,9 +9,11 @@ from __future__ import annotations
 import functools
 import inspect
 import math
+import textwrap
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any, Concatenate, Generic, Literal, ParamSpec
 
 import numpy as np
@@ -206,6 +208,14 @@ class Formula(Generic[Arguments]):
         return ", ".join(map(str, self.limits)) or "everywhere"
 
     @property
+    def evidence(self) -> str:
+        """Where it holds, how far it errs there, and where it is from, in words."""
+        power = f" as ({self.small.replace('_', ' ')})**({Fraction(self.error_order).limit_denominator(12)})"
+        falls = f", and falls{power.removesuffix('**(1)')}" if self.small else ""
+        where = f"Range: {self.range}; the error there is at most {100 * self.worst:g} %{falls}."
+        return "\n\n".join(textwrap.fill(each, 100, break_on_hyphens=False) for each in (where, f"Source: {self.source}."))
+
+    @property
     def needs_coefficients(self) -> bool:
         """Whether the range depends on mu0 and beta."""
         return any(limit.parameter == COEFFICIENT_RATIO for limit in self.limits)
@@ -322,7 +332,7 @@ class Formula(Generic[Arguments]):
 
 def formula(
     *,
-    predicts: str,
+    predicts: str = "",
     plane: Plane,
     limits: tuple[Limit, ...],
     worst: float,
@@ -338,16 +348,17 @@ def formula(
 ) -> Callable[[Callable[Concatenate[Groups, Arguments], Value]], Formula[Arguments]]:
     """Return the decorator that makes a function a :class:`Formula`; arguments as its attributes.
 
-    ``undefined`` states where the value is nan.  What the docstring leaves out is filled in, see
-    :mod:`stribeck.asymptotics.documentation`.
+    ``predicts`` is the name of the function by default, and ``undefined`` states where the value is nan.  What the docstring
+    leaves out is filled in, see :mod:`stribeck.asymptotics.documentation`.
     """
 
     def decorate(function: Callable[Concatenate[Groups, Arguments], Value]) -> Formula[Arguments]:
+        quantity = predicts or function.__name__
         made = Formula(
-            function, predicts, plane, limits, worst, small, error_order, approach, steps, interval, source, geometry, uses
+            function, quantity, plane, limits, worst, small, error_order, approach, steps, interval, source, geometry, uses
         )
         if function.__doc__ is not None:  # as it is under `python -OO`
-            function.__doc__ = completed(function, predicts, uses, undefined)
+            function.__doc__ = completed(function, quantity, uses, geometry, undefined, made.evidence)
         kept: dict[str, object] = {name: getattr(function, name) for name in functools.WRAPPER_ASSIGNMENTS}
         vars(made).update(kept, __wrapped__=function)
         return made

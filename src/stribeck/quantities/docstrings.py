@@ -50,7 +50,9 @@ def _sentence(words: Words) -> str:
 _HEADING = re.compile(r"^(\w+)\n-+\n", re.MULTILINE)
 
 
-def complete_docstring(function: Callable[..., Any], arguments: Mapping[str, str], returns: str = "", raises: str = "") -> str:
+def complete_docstring(
+    function: Callable[..., Any], arguments: Mapping[str, str], returns: str = "", raises: str = "", notes: str = ""
+) -> str:
     """Return the docstring of a function or class with the sections, and the arguments, that it leaves out."""
     head, *parts = _HEADING.split(inspect.getdoc(function) or "")
     own = {title: text.strip("\n") for title, text in zip(parts[::2], parts[1::2], strict=True)}
@@ -61,7 +63,7 @@ def complete_docstring(function: Callable[..., Any], arguments: Mapping[str, str
         "Attributes": own.get("Attributes", ""),
         "Returns": own.get("Returns", returns),
         "Raises": own.get("Raises", raises),
-        "Notes": own.get("Notes", ""),
+        "Notes": "\n\n".join(filter(None, (own.get("Notes", ""), notes))),
         "Examples": own.get("Examples", ""),
     }
     body = "\n\n".join(f"{title}\n{'-' * len(title)}\n{text}" for title, text in sections.items() if text)

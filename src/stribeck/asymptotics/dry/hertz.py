@@ -5,6 +5,8 @@ Source: [BP] Eqs. (Hertz), (vertical_position_Hz).
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from stribeck.asymptotics.formula import Limit, Value, formula
@@ -20,16 +22,22 @@ def _contact_and_around(groups: Groups) -> tuple[float, float]:
     return -2.0, 2.0
 
 
-@formula(
-    predicts="pressure",
+_dry = partial(
+    formula,
     uses=(),
     plane="mixed",
-    limits=(Limit("speed", 0, 1e-7), Limit("relative_roughness", 0, 1e-4)),
-    worst=0.05,
+    limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-4)),
     small="relative_roughness",
-    error_order=1 / 3,
+    error_order=1,
     approach=_rest,
     steps=(1e-3, 1e-4, 1e-5),
+)
+
+
+@_dry(
+    limits=(Limit("speed", 0, 1e-7), Limit("relative_roughness", 0, 1e-4)),
+    worst=0.05,
+    error_order=1 / 3,
     interval=_contact_and_around,
     source="[BP] Eq. (Hertz)",
 )
@@ -38,78 +46,32 @@ def pressure(groups: Groups, x: Value) -> Value:
 
     .. math:: p = (1 - x^2)^{1/2}
 
-    Returns
-    -------
-    float or ndarray
-        Pressure [p_Hz]; zero outside the contact.
-
     Notes
     -----
     The error is that at the edge, where the true pressure goes as kappa**(1/3) or lambda**(1/5); at fixed distance from the
     edge it falls as kappa.
-
-    Source: [BP] Eq. (Hertz).
     """
     return hertz.pressure(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
 
 
-@formula(
-    predicts="gap",
-    uses=(),
-    plane="mixed",
-    limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-4)),
-    worst=1e-3,
-    small="relative_roughness",
-    error_order=1,
-    approach=_rest,
-    steps=(1e-3, 1e-4, 1e-5),
-    interval=_contact_and_around,
-    source="[BP] Eq. (Hertz)",
-)
+@_dry(worst=1e-3, interval=_contact_and_around, source="[BP] Eq. (Hertz)")
 def gap(groups: Groups, x: Value) -> Value:
     r"""Return the gap around the dry contact.
 
     .. math:: h = \tfrac12 \left[|x| \sqrt{x^2 - 1} - \ln\left(|x| + \sqrt{x^2 - 1}\right)\right] \text{ beyond } |x| = 1
 
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz]; zero in the contact.
-
     Notes
     -----
-    The error is relative to the largest gap within two half-widths; it is of order kappa,
+    Zero in the contact.  The error is relative to the largest gap within two half-widths; it is of order kappa,
     with logarithms, or lambda**(3/5).
-
-    Source: [BP] Eq. (Hertz).
     """
     return hertz.gap(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
 
 
-@formula(
-    predicts="offset",
-    uses=(),
-    plane="mixed",
-    limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-4)),
-    worst=1e-3,
-    small="relative_roughness",
-    error_order=1,
-    approach=_rest,
-    steps=(1e-3, 1e-4, 1e-5),
-    source="[BP] Eq. (vertical_position_Hz)",
-)
+@_dry(worst=1e-3, source="[BP] Eq. (vertical_position_Hz)")
 def offset(groups: Groups) -> Value:
     r"""Return the offset of the dry contact.
 
     .. math:: z_0 = -\frac{1 + \ln 4}{4}
-
-    Returns
-    -------
-    float or ndarray
-        Offset [u_Hz], in the gauge ln(abs(x-y)/a).
-
-    Notes
-    -----
-    Source: [BP] Eq. (vertical_position_Hz).
     """
     return np.full(groups.shape, hertz.HERTZ_OFFSET)

@@ -8,6 +8,7 @@ Source: [BP] Section "Quasistatic limit"; the second terms are ours.
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -38,16 +39,21 @@ def _gaussian(groups: Groups) -> tuple[float, float]:
     return -width, width
 
 
-@formula(
-    predicts="gap",
+_large_indentation = partial(
+    formula,
     uses=("load", "relative_roughness"),
-    undefined="from the edge of the contact outwards, where this has no value",
     plane="rest",
     limits=LARGE_INDENTATION,
-    worst=0.03,
     small="relative_roughness",
     error_order=1,
     approach=_smoother,
+    steps=(1e-2, 1e-3, 1e-4),
+)
+
+
+@_large_indentation(
+    undefined="from the edge of the contact outwards, where this has no value",
+    worst=0.03,
     steps=(1e-3, 1e-4, 1e-5),
     interval=_contact,
     source="[BP] Eq. (central_region_contact)",
@@ -61,26 +67,14 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
     -----
     Compared with the solver up to 0.9 of the half-width; the edge has a layer of width kappa**(2/3).
 
-    Source: [BP] Eq. (central_region_contact).  The second term is ours: the pressure :math:`-\kappa (1 - x^2)^{-1/2}` of next
-    order, whose elastic gap is the first term.
+    The second term is ours: the pressure :math:`-\kappa (1 - x^2)^{-1/2}` of next order, whose elastic gap is the first term.
     """
     kappa, below = groups.relative_roughness, _below(x)
     leading: Array = -0.5 * kappa * np.log(groups.load * below)
     return leading + second(terms) * np.square(kappa) / below
 
 
-@formula(
-    predicts="central_gap",
-    uses=("load", "relative_roughness"),
-    plane="rest",
-    limits=LARGE_INDENTATION,
-    worst=0.03,
-    small="relative_roughness",
-    error_order=1,
-    approach=_smoother,
-    steps=(1e-2, 1e-3, 1e-4),
-    source="[BP] Eq. (central_region_contact)",
-)
+@_large_indentation(worst=0.03, source="[BP] Eq. (central_region_contact); the second term is ours")
 def central_gap(groups: Groups, terms: int = 1) -> Value:
     r"""Return the gap at the centre of a rough contact at rest.
 
@@ -89,59 +83,41 @@ def central_gap(groups: Groups, terms: int = 1) -> Value:
     Notes
     -----
     With both terms the error is -2.67 kappa**4, as measured.
-
-    Source: [BP] Eq. (central_region_contact); the second term is ours.
     """
     return gap.function(groups, 0.0, terms)
 
 
-@formula(
-    predicts="offset",
-    uses=("load", "relative_roughness"),
-    plane="rest",
-    limits=LARGE_INDENTATION,
-    worst=1e-4,
-    small="relative_roughness",
-    error_order=2,
-    approach=_smoother,
-    steps=(1e-2, 1e-3, 1e-4),
-    source="theory.md, section 7",
-)
+@_large_indentation(worst=1e-4, error_order=2, source="theory.md, section 7")
 def offset(groups: Groups, terms: int = 1) -> Value:
     r"""Return the offset of a rough contact at rest.
 
     .. math:: z_0 = -\frac{1 + \ln 4}{4} + \kappa \left(\ln 2 - \tfrac12 \ln \bar F_N\right) \; (+ \tfrac13 \kappa^2)
-
-    Returns
-    -------
-    float or ndarray
-        Offset [u_Hz], in the gauge ln(abs(x-y)/a).
 
     Notes
     -----
     The energy of the contact per kappa**2 holds :math:`\tfrac\pi6 \ln(\kappa u_\mathrm{Hz})`, the logarithm of the pressure at
     the edge times the load there; its derivative with respect to the load is the second term.  With both terms the error is
     -0.178 kappa**4, as measured.
-
-    Source: theory.md, section 7.
     """
     kappa = groups.relative_roughness
     leading: Array = hertz.HERTZ_OFFSET + kappa * (math.log(2) - 0.5 * np.log(groups.load))
     return leading + second(terms) * np.square(kappa) / 3
 
 
-@formula(
-    predicts="gap",
+_small_indentation = partial(
+    formula,
     uses=("load", "relative_roughness"),
     plane="rest",
     limits=SMALL_INDENTATION,
-    worst=0.011,
     small="1/relative_roughness",
     error_order=1,
     approach=_rougher,
     steps=(1e-1, 1e-2, 1e-3),
-    interval=_gaussian,
-    source="[BP] Section 'Small indentation limit'",
+)
+
+
+@_small_indentation(
+    predicts="gap", worst=0.011, interval=_gaussian, source="[BP] Eq. (separation_small_indentation); the second term is ours"
 )
 def gap_small_indentation(groups: Groups, x: Value, terms: int = 1) -> Value:
     r"""Return the gap at rest of a very rough contact, which is hardly deflected.
@@ -152,24 +128,13 @@ def gap_small_indentation(groups: Groups, x: Value, terms: int = 1) -> Value:
     -----
     Compared with the solver up to three standard deviations of the pressure, :math:`3 \kappa^{1/2}`.
     The second term is right at x = 0.
-
-    Source: [BP] Eq. (separation_small_indentation); the second term is ours.
     """
     x = np.asarray(x, dtype=float)
     return central_gap_small_indentation.function(groups, terms) + np.square(x) / 2
 
 
-@formula(
-    predicts="central_gap",
-    uses=("load", "relative_roughness"),
-    plane="rest",
-    limits=SMALL_INDENTATION,
-    worst=0.009,
-    small="1/relative_roughness",
-    error_order=1,
-    approach=_rougher,
-    steps=(1e-1, 1e-2, 1e-3),
-    source="[BP] Eq. (separation_small_indentation)",
+@_small_indentation(
+    predicts="central_gap", worst=0.009, source="[BP] Eq. (separation_small_indentation); the second term is ours"
 )
 def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
     r"""Return the gap at the centre of a very rough contact at rest.
@@ -179,60 +144,34 @@ def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
     Notes
     -----
     The second term is the deflection under the Gaussian pressure, averaged over it, less that at the centre.
-
-    Source: [BP] Eq. (separation_small_indentation); the second term is ours.
     """
     kappa = np.asarray(groups.relative_roughness)
     leading: Array = -0.5 * kappa * np.log(math.pi * groups.load / (8 * kappa))
     return leading + second(terms) * math.log(2) / 4
 
 
-@formula(
-    predicts="offset",
-    uses=("load", "relative_roughness"),
-    plane="rest",
-    limits=SMALL_INDENTATION,
-    worst=3e-4,
-    small="1/relative_roughness",
-    error_order=2,
-    approach=_rougher,
-    steps=(1e-1, 1e-2, 1e-3),
-    source="stribeck.asymptotics.rough.boundary",
-)
+@_small_indentation(predicts="offset", worst=3e-4, error_order=2, source="ours, from [BP] Section 'Small indentation limit'")
 def offset_small_indentation(groups: Groups) -> Value:
     r"""Return the offset of a very rough contact at rest.
 
     .. math:: z_0 = -\frac\kappa2 \ln \frac{\pi \bar F_N}{8 \kappa} + \tfrac14 \ln \kappa - \tfrac14 \gamma_E
 
-    Returns
-    -------
-    float or ndarray
-        Offset [u_Hz], in the gauge ln(abs(x-y)/a).
-
     Notes
     -----
     The central gap with both terms, less the deflection :math:`-\tfrac12 \langle \ln |y| \rangle` under a Gaussian of
     variance kappa.
-
-    Source: ours, from [BP] Section "Small indentation limit".
     """
     kappa = np.asarray(groups.relative_roughness)
     deflection = -0.25 * (np.log(kappa / 2) - np.euler_gamma)
     return central_gap_small_indentation.function(groups, terms=2) - deflection
 
 
-@formula(
+@_small_indentation(
     predicts="contact_pressure",
     uses=("relative_roughness",),
-    plane="rest",
-    limits=SMALL_INDENTATION,
     worst=0.018,
-    small="1/relative_roughness",
-    error_order=1,
-    approach=_rougher,
-    steps=(1e-1, 1e-2, 1e-3),
     interval=_gaussian,
-    source="[BP] Section 'Small indentation limit'",
+    source="[BP] Section 'Small indentation limit', without its minus sign",
 )
 def contact_pressure_small_indentation(groups: Groups, x: Value, printed: bool = False) -> Value:
     r"""Return the contact pressure at rest of a very rough contact.
@@ -243,10 +182,6 @@ def contact_pressure_small_indentation(groups: Groups, x: Value, printed: bool =
     ----------
     printed : bool
         With the minus sign that is printed.
-
-    Notes
-    -----
-    Source: [BP] Section "Small indentation limit", without its minus sign.
     """
     kappa = np.asarray(groups.relative_roughness)
     sign = -1.0 if printed else 1.0

@@ -14,6 +14,7 @@ Source: ours, as [BP] Appendix C and D for the line; theory.md, section 11.
 from __future__ import annotations
 
 import warnings
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -111,15 +112,10 @@ def edge_factor(load: Value, kappa: Value, coefficients: tuple[float, float, flo
     return np.asarray(1 + np.polynomial.polynomial.polyval(A, coefficients) * np.power(kappa, 2 / 3))
 
 
-@formula(
-    geometry="point",
-    predicts="fluid_load_share",
-    undefined="from load 1 on",
-    plane="mixed",
-    limits=SLOW_RANGE,
-    worst=0.06,
-    source="ours",
-)
+_slow = partial(formula, plane="mixed", geometry="point", limits=SLOW_RANGE)
+
+
+@_slow(undefined="from load 1 on", worst=0.06, source="ours; the coefficients are fitted")
 def fluid_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = "quadrature") -> Value:
     r"""Return the load share of the fluid under a slow rough ball.
 
@@ -132,16 +128,12 @@ def fluid_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = "q
     ----------
     with_edges : bool
         Whether with the bracket and the exponential, which go to one as kappa goes to zero.
-    form : {"quadrature", "closed"}
-        As in :func:`phi`.
 
     Notes
     -----
     G is Catalan's constant, of the gap in the middle at rest.  Without the edges the limit is reached slowly: at load
     1e-3 the true share is larger by 2.5 % at kappa = 1e-4, 12 % at 1e-3, 54 % at 0.01 and 245 % at 0.1, as the fluid
     acts under the edges too. With them it is within 4 % for kappa up to 0.03.
-
-    Source: this module; the coefficients are fitted.
     """
     number = fluid_number(groups)
     if not with_edges:
@@ -150,43 +142,16 @@ def fluid_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = "q
     return np.square(number) * phi_of(gap_at_rest(F, kappa), form) * edge_factor(F, kappa, SHARE_EDGE_COEFFICIENTS)
 
 
-@formula(
-    geometry="point",
-    predicts="contact_load_share",
-    undefined="from load 1 on",
-    plane="mixed",
-    limits=SLOW_RANGE,
-    worst=2e-4,
-    source="ours",
-)
+@_slow(undefined="from load 1 on", worst=2e-4, source="ours")
 def contact_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = "quadrature") -> Value:
     r"""Return the load share of the asperities under a slow rough ball.
 
     .. math:: \frac{F_c}{F_N} = 1 - \frac{F_f}{F_N}
-
-    Parameters
-    ----------
-    with_edges : bool
-        As in :func:`fluid_load_share`.
-    form : {"quadrature", "closed"}
-        As in :func:`phi`.
-
-    Notes
-    -----
-    Source: this module.
     """
     return 1 - fluid_load_share.function(groups, with_edges, form)
 
 
-@formula(
-    geometry="point",
-    predicts="viscous_friction",
-    undefined="from load 1 on",
-    plane="mixed",
-    limits=SLOW_RANGE,
-    worst=0.09,
-    source="ours",
-)
+@_slow(undefined="from load 1 on", worst=0.09, source="ours")
 def viscous_friction(
     groups: Groups, beta: float = 1.0, definition: Definition = "balanced", wetted_radius: float | None = None
 ) -> Value:
@@ -200,18 +165,9 @@ def viscous_friction(
         M = \left[1 + m \kappa^{2/3}\right] \pi \int_0^1 r^2 P_1 \, dr \\
         s &= 1.566 + 4.399 A - 0.658 A^2, \quad m = 7.554 A + 0.835 A^2 - 0.845
 
-    Parameters
-    ----------
-    definition : {"balanced", "published"}
-        The force on the flat; or with the moment in brackets, by the definition of the article.
-    wetted_radius : float, optional
-        Where the liquid ends [a]; by default that of a whole sphere, :mod:`stribeck.contacts.cut_off`.
-
     Notes
     -----
     The integrals are over the contact at the load of :func:`fluid_load_share`; s and m are fitted.
-
-    Source: this module.
     """
     lambda_, F, kappa = groups.speed, groups.load, np.asarray(groups.relative_roughness)
     definition = check_definition(definition)
@@ -232,15 +188,7 @@ def viscous_friction(
     return (0.75 * beta * np.power(F, 1 / 3) * J)[()]
 
 
-@formula(
-    geometry="point",
-    predicts="friction",
-    undefined="from load 1 on",
-    plane="mixed",
-    limits=(*SLOW_RANGE, Limit("beta/mu0", 0.0, 1.0)),
-    worst=1e-3,
-    source="ours",
-)
+@_slow(limits=(*SLOW_RANGE, Limit("beta/mu0", 0.0, 1.0)), undefined="from load 1 on", worst=1e-3, source="ours")
 def friction(
     groups: Groups,
     boundary_friction: float = 1.0,
@@ -251,17 +199,6 @@ def friction(
     r"""Return the friction of a ball in boundary lubrication.
 
     .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \mu_f
-
-    Parameters
-    ----------
-    definition : {"balanced", "published"}
-        As in :func:`viscous_friction`.
-    wetted_radius : float, optional
-        As in :func:`viscous_friction`.
-
-    Notes
-    -----
-    Source: this module.
     """
     viscous = viscous_friction.function(groups, beta, definition, wetted_radius)
     return boundary_friction * contact_load_share.function(groups) + viscous

@@ -33,6 +33,7 @@ section 11.
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -64,15 +65,10 @@ def _inside(groups: Groups) -> tuple[float, float]:
     return -0.8, 0.8
 
 
-@formula(
-    geometry="point",
-    predicts="central_gap",
-    uses=("speed",),
-    plane="smooth",
-    limits=(Limit("speed", 0.0, 1e-2),),
-    worst=0.014,
-    source="ours; inlet of Snoeijer, Eggers and Venner (2013)",
-)
+_film = partial(formula, uses=("speed",), plane="smooth", geometry="point", limits=(Limit("speed", 0.0, 1e-2),))
+
+
+@_film(predicts="central_gap", worst=0.014, source="ours; inlet of Snoeijer, Eggers and Venner (2013)")
 def central_gap_slow(groups: Groups, leakage: bool = True) -> Value:
     r"""Return the gap in the middle of a slow smooth ball.
 
@@ -90,22 +86,12 @@ def central_gap_slow(groups: Groups, leakage: bool = True) -> Value:
     In SI :math:`h = 1.696 \, R \, (\eta U/E^* R)^{3/5} (F_N/E^* R^2)^{-2/15}` times the bracket.  With leakage the error is
     within 0.1 % for speeds up to 1e-4, -1.3 % at 0.01 and -3.9 % at 0.1; without it goes as :math:`\tfrac\pi2 c^2
     \lambda^{1/5}`, 1.8 % even at speed 1e-6.
-
-    Source: ours, see the module.
     """
     film: Value = BALL_FILM_CONSTANT * np.power(groups.speed, 0.6)
     return film * (1 + LEAKAGE_COEFFICIENT * np.power(groups.speed, 0.2)) ** -0.5 if leakage else film
 
 
-@formula(
-    geometry="point",
-    predicts="central_gap",
-    uses=("speed",),
-    plane="smooth",
-    limits=(),
-    worst=0.0011,
-    source="ours",
-)
+@_film(limits=(), worst=0.0011, source="ours")
 def central_gap(groups: Groups) -> Value:
     r"""Return the gap in the middle of a smooth ball at any speed.
 
@@ -120,8 +106,6 @@ def central_gap(groups: Groups) -> Value:
     As the speed tends to zero it is :func:`central_gap_slow`, as it tends to infinity the gap of the rigid ball,
     :mod:`stribeck.asymptotics.point.rigid`; in between :math:`d_1 \dots d_4, n_2 \dots n_4` = -0.35423, -0.055968, -0.05253,
     0.094462, 0.53295, -0.10852, -0.0096834 are fitted.  Largest error 0.09 % at 49 speeds from 1e-6 to 1e4.
-
-    Source: ours.
     """
     return film_of(groups.speed)
 
@@ -138,16 +122,13 @@ def film_of(speed: Value) -> Value:
     return found
 
 
-@formula(
-    geometry="point",
+@_film(
     predicts="gap",
-    uses=("speed",),
-    undefined="from the edge of the contact outwards, where this has no value",
-    plane="smooth",
     limits=(Limit("speed", 0.0, 1e-3),),
+    undefined="from the edge of the contact outwards, where this has no value",
     worst=0.03,
-    source="ours",
     interval=_inside,
+    source="ours",
 )
 def gap_slow(groups: Groups, x: Value) -> Value:
     r"""Return the gap along the middle of a slow smooth ball, in the contact.
@@ -160,8 +141,6 @@ def gap_slow(groups: Groups, x: Value) -> Value:
     Notes
     -----
     Compared with the solver up to 0.8 of the radius; inlet and outlet are :math:`\lambda^{2/5}` wide.
-
-    Source: ours, see the module.
     """
     x = np.where(np.abs(x) < 1, x, np.nan)
     q = _flux_film(groups.speed, np.arcsin(x) + math.pi / 2)
@@ -169,15 +148,7 @@ def gap_slow(groups: Groups, x: Value) -> Value:
     return np.asarray(q - slope * x / np.sqrt((1 - x) * (1 + x)))[()]
 
 
-@formula(
-    geometry="point",
-    predicts="minimum_gap_on_axis",
-    uses=("speed",),
-    plane="smooth",
-    limits=(Limit("speed", 0.0, 1e-2),),
-    worst=0.018,
-    source="ours; outlet of Snoeijer, Eggers and Venner (2013)",
-)
+@_film(worst=0.018, source="ours; outlet of Snoeijer, Eggers and Venner (2013)")
 def minimum_gap_on_axis(groups: Groups) -> Value:
     r"""Return the minimum along the middle of a slow smooth ball, at its outlet.
 
@@ -190,8 +161,6 @@ def minimum_gap_on_axis(groups: Groups) -> Value:
     -----
     f is the film that reaches the outlet over that of the inlet.  Below by 0.07 % at speed 1e-6, 0.3 % at 1e-4, 1.7 %
     at 0.01.  The limit over the central film, 0.75801, is far: it is 0.750, 0.741, 0.720 at these speeds.
-
-    Source: ours, see the module.
     """
     film = BALL_FILM_CONSTANT * np.power(groups.speed, 0.6)
     log_f = -0.5 * np.log1p(2 * LEAKAGE_COEFFICIENT * np.power(groups.speed, 0.2))
@@ -200,15 +169,7 @@ def minimum_gap_on_axis(groups: Groups) -> Value:
     return found
 
 
-@formula(
-    geometry="point",
-    predicts="minimum_gap",
-    uses=("speed",),
-    plane="smooth",
-    limits=(Limit("speed", 1e-6, 0.3),),
-    worst=0.017,
-    source="ours: derived power, fitted coefficients",
-)
+@_film(limits=(Limit("speed", 1e-6, 0.3),), worst=0.017, source="ours: derived power, fitted coefficients")
 def minimum_gap(groups: Groups) -> Value:
     r"""Return the minimum film of a slow smooth ball, at its two sides.
 
@@ -218,8 +179,6 @@ def minimum_gap(groups: Groups) -> Value:
     -----
     The power 3/4 is derived, the three coefficients are fitted, within 1.5 % over the range.  The local exponent is
     0.735 to 0.745 at speeds 1e-4 to 1e-6.
-
-    Source: ours, see the module.
     """
     limit, one, two = SIDE_COEFFICIENTS
     v = np.power(groups.speed, 0.25)

@@ -19,6 +19,7 @@ Source: ours; theory.md, section 11.
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -78,13 +79,7 @@ def smooth_integral(speed: Value) -> Value:
 
 
 @formula(
-    geometry="point",
-    predicts="viscous_friction",
-    uses=("speed", "load"),
-    plane="smooth",
-    limits=(),
-    worst=6e-3,
-    source="ours",
+    predicts="viscous_friction", uses=("speed", "load"), plane="smooth", geometry="point", limits=(), worst=6e-3, source="ours"
 )
 def viscous_friction_smooth(
     groups: Groups, beta: float = 1.0, definition: Definition = "balanced", wetted_radius: float | None = None
@@ -98,27 +93,18 @@ def viscous_friction_smooth(
     definition : {"balanced", "published"}
         The same for a whole ball; a disc of liquid ends with a pressure at its rim, which adds
         :math:`\tfrac25 \pi \lambda` to the published one.
-    wetted_radius : float, optional
-        Where the liquid ends [a]; by default that of a whole sphere, :mod:`stribeck.contacts.cut_off`.
 
     Notes
     -----
     :func:`smooth_integral` has both limits and seven fitted coefficients.
-
-    Source: this module.
     """
     return _coefficient(groups, smooth_integral(groups.speed), beta, check_definition(definition), wetted_radius)[()]
 
 
-@formula(
-    geometry="point",
-    predicts="viscous_friction",
-    undefined="from load 1 on",
-    plane="mixed",
-    limits=(*FIT_RANGE, Limit("film_ratio", 0.0, 12.0)),
-    worst=0.22,
-    source="ours",
-)
+_rough = partial(formula, plane="mixed", geometry="point")
+
+
+@_rough(limits=(*FIT_RANGE, Limit("film_ratio", 0.0, 12.0)), undefined="from load 1 on", worst=0.22, source="ours")
 def viscous_friction(
     groups: Groups, beta: float = 1.0, definition: Definition = "balanced", wetted_radius: float | None = None
 ) -> Value:
@@ -133,32 +119,20 @@ def viscous_friction(
         q = b_7 + \frac{b_1 + b_2/G_X}{(1 + b_3 \kappa^{b_4} G_X^{b_6}) \, (1 + b_5 \ln(1 + X))} \\
         M(G) &= c_1 G^{-c_2} (1 + c_3 G)^{-c_4} (1 + c_5 G)^{c_2 + c_4 - 3}, \quad A_0 = -\tfrac13 \ln \bar F_N
 
-    Parameters
-    ----------
-    definition : {"balanced", "published"}
-        The force on the flat; or with the moment J_m, which the definition of the paper has.
-    wetted_radius : float, optional
-        As in :func:`viscous_friction_smooth`.
-
     Notes
     -----
     The speed of the film is that of :mod:`stribeck.asymptotics.point.sharing`.  Relative to itself, the error is
     largest where the viscous part is a small part of all friction; in the median it is 3 %. By the published definition, which
     the moment dominates there, it is 7.5 % at worst and 1.5 % in the median.
-
-    Source: this module.
     """
     return _viscous(groups, log_odds(groups), beta, check_definition(definition), wetted_radius)[()]
 
 
-@formula(
-    geometry="point",
-    predicts="friction",
-    undefined="from load 1 on",
-    plane="mixed",
+@_rough(
     limits=(*FIT_RANGE, Limit("beta/mu0", 0.1, 1.0)),
+    undefined="from load 1 on",
     worst=0.15,
-    source="ours",
+    source="ours, with :mod:`stribeck.asymptotics.point.sharing`",
 )
 def friction(
     groups: Groups,
@@ -171,20 +145,11 @@ def friction(
 
     .. math:: \mu = \mu_0 S + \mu_f
 
-    Parameters
-    ----------
-    definition : {"balanced", "published"}
-        As in :func:`viscous_friction`.
-    wetted_radius : float, optional
-        As in :func:`viscous_friction_smooth`.
-
     Notes
     -----
     Against 1086 solved states over the whole box the error is below 0.03 % in the median, 5.5 % on 99 of 100 and 13.4 % at
     worst for beta/mu0 = 0.1 to 1, by both definitions; the worst lies in the corner of the box, at load 1e-3, kappa 3e-4 and
     speed 3e-4, where the few asperities under the sides of thick films count. At beta/mu0 = 0.01 it is 17 %.
-
-    Source: this module and :mod:`stribeck.asymptotics.point.sharing`.
     """
     odds = log_odds(groups)
     share = np.exp(-np.logaddexp(0.0, odds))

@@ -6,6 +6,7 @@ Source: Hertz (1882); K. L. Johnson, Contact Mechanics (1985), Section 3.4.
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -26,17 +27,23 @@ def _contact_and_around(groups: Groups) -> tuple[float, float]:
     return -2.0, 2.0
 
 
-@formula(
-    geometry="point",
-    predicts="pressure",
+_dry = partial(
+    formula,
     uses=(),
     plane="mixed",
-    limits=(Limit("speed", 0, 1e-7), Limit("relative_roughness", 0, 1e-3)),
-    worst=0.11,
+    geometry="point",
+    limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-3)),
     small="relative_roughness",
-    error_order=1 / 3,
+    error_order=1,
     approach=_rest,
     steps=(1e-2, 1e-3, 1e-4),
+)
+
+
+@_dry(
+    limits=(Limit("speed", 0, 1e-7), Limit("relative_roughness", 0, 1e-3)),
+    worst=0.11,
+    error_order=1 / 3,
     interval=_contact_and_around,
     source="Hertz (1882)",
 )
@@ -45,60 +52,27 @@ def pressure(groups: Groups, x: Value) -> Value:
 
     .. math:: p = (1 - x^2)^{1/2}
 
-    Parameters
-    ----------
-    x : float or array_like
-        Positions, or distances from the middle [a].
-
-    Returns
-    -------
-    float or ndarray
-        Pressure [p_Hz]; zero outside the contact.
-
     Notes
     -----
     The error is that at the edge, where the true pressure goes as kappa**(1/3) or lambda**(1/5).
-
-    Source: Hertz (1882).
     """
     return hertz.pressure(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
 
 
-@formula(
-    geometry="point",
-    predicts="gap",
-    uses=(),
-    plane="mixed",
-    limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-3)),
-    worst=0.012,
-    small="relative_roughness",
-    error_order=1,
-    approach=_rest,
-    steps=(1e-2, 1e-3, 1e-4),
-    interval=_contact_and_around,
-    source="Johnson (1985), Section 3.4",
-)
+@_dry(worst=0.012, interval=_contact_and_around, source="Johnson (1985), Section 3.4")
 def gap(groups: Groups, x: Value) -> Value:
     r"""Return the gap around the dry contact of a ball.
 
     .. math:: h = \frac1\pi \left[(x^2 - 2) \arccos\frac1{|x|} + (x^2 - 1)^{1/2}\right] \text{ beyond } |x| = 1
 
-    Parameters
-    ----------
-    x : float or array_like
-        Positions, or distances from the middle [a].
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz]; zero in the contact.
+    Notes
+    -----
+    Zero in the contact.
 
     Notes
     -----
     The error is relative to the largest gap within two radii; it is of order kappa,
     with logarithms, or lambda**(3/5).
-
-    Source: Johnson (1985), Section 3.4.
     """
     return dry_gap(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
 
@@ -111,33 +85,14 @@ def dry_gap(r: Array) -> Array:
     return np.asarray((root * 1.0 + (beyond**2 - 2) * np.arctan(root)) / math.pi)
 
 
-@formula(
-    geometry="point",
-    predicts="offset",
-    uses=(),
-    plane="mixed",
-    limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-3)),
-    worst=0.0045,
-    small="relative_roughness",
-    error_order=1,
-    approach=_rest,
-    steps=(1e-2, 1e-3, 1e-4),
-    source="Hertz (1882)",
-)
+@_dry(worst=0.0045, source="Hertz (1882)")
 def offset(groups: Groups) -> Value:
     r"""Return the offset of the dry contact of a ball.
 
     .. math:: z_0 = -1
 
-    Returns
-    -------
-    float or ndarray
-        Offset [u_Hz]: height of the apex over the undeformed surface.
-
     Notes
     -----
     Unlike on the line there is no gauge: the surface far away stands still.
-
-    Source: Hertz (1882).
     """
     return np.full(groups.shape, HERTZ_OFFSET)[()]

@@ -20,6 +20,7 @@ Source: facts of theory.md, section 11; the authors' names stand with each.
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -28,15 +29,14 @@ from stribeck.contacts.groups import Groups
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.units import InputError, show
 
+_regression = partial(formula, uses=("speed",), plane="smooth", geometry="point")
 
-@formula(
-    geometry="point",
+
+@_regression(
     predicts="central_gap",
-    uses=("speed",),
-    plane="smooth",
     limits=(Limit("speed", 1e-5, 10.0),),
     worst=0.35,
-    source="B. J. Hamrock and D. Dowson (1978)",
+    source="B. J. Hamrock and D. Dowson, J. Lubr. Technol. 100 (1978) 236",
 )
 def hamrock_dowson_soft(groups: Groups, slope: float = 0.1) -> Value:
     r"""Return the central film of Hamrock and Dowson for soft contacts, of a ball.
@@ -47,22 +47,17 @@ def hamrock_dowson_soft(groups: Groups, slope: float = 0.1) -> Value:
     -----
     Its exponent 0.64 is that of a range of light loads; the exact one is 3/5 for slow speed.  At a/R = 0.1 from 31 %
     below at speed 1e-5 to 28 % above at 10; it goes as :math:`(a/R)^{-0.1}`.
-
-    Source: B. J. Hamrock and D. Dowson, J. Lubr. Technol. 100 (1978) 236.
     """
     ratio = _slope(slope)
     U, W = groups.speed * ratio**4 / (12 * math.pi), 2 / 3 * ratio**3
     return (7.32 * (1 - 0.72 * math.exp(-0.28)) * U**0.64 * W**-0.22 / ratio**2)[()]
 
 
-@formula(
-    geometry="point",
+@_regression(
     predicts="central_gap",
-    uses=("speed",),
-    plane="smooth",
     limits=(Limit("speed", 1e-6, 10.0),),
     worst=0.11,
-    source="J. de Vicente, J. R. Stokes and H. A. Spikes (2005)",
+    source="J. de Vicente, J. R. Stokes and H. A. Spikes, Tribol. Lett. 20 (2005) 273",
 )
 def de_vicente(groups: Groups, slope: float = 0.1) -> Value:
     r"""Return the central film of de Vicente, Stokes and Spikes for soft balls.
@@ -73,22 +68,17 @@ def de_vicente(groups: Groups, slope: float = 0.1) -> Value:
     -----
     Its exponents are nearly the exact ones, 3/5 and -2/15.  At a/R = 0.1 between 0.7 % below at speed 1e-6 and 10 %
     above at 0.5; it goes as :math:`(a/R)^{-0.02}`.
-
-    Source: J. de Vicente, J. R. Stokes and H. A. Spikes, Tribol. Lett. 20 (2005) 273.
     """
     ratio = _slope(slope)
     U, W = groups.speed * ratio**4 / (12 * math.pi), 2 / 3 * ratio**3
     return (3.3 * U**0.60 * W**-0.14 / ratio**2)[()]
 
 
-@formula(
-    geometry="point",
+@_regression(
     predicts="central_gap",
-    uses=("speed",),
-    plane="smooth",
     limits=(Limit("speed", 1e-6, 0.4),),
     worst=0.09,
-    source="G. Nijenbanning, C. H. Venner and H. Moes (1994)",
+    source="G. Nijenbanning, C. H. Venner and H. Moes, Wear 176 (1994) 217",
 )
 def nijenbanning_venner_moes(groups: Groups) -> Value:
     r"""Return the central film of Nijenbanning, Venner and Moes for a circular contact without pressure-viscosity effect.
@@ -103,8 +93,6 @@ def nijenbanning_venner_moes(groups: Groups) -> Value:
     -----
     Between 4 and 8 % above the solver.  Its branch of the rigid ball is that with cavitation, which carries load without any
     deflection: from speed 0.5 on the film without cavitation is thinner and thinner beside it.
-
-    Source: G. Nijenbanning, C. H. Venner and H. Moes, Wear 176 (1994) 217.
     """
     lambda_ = np.asarray(groups.speed)
     M = 2 / 3 * (6 * math.pi / lambda_) ** 0.75

@@ -22,6 +22,7 @@ Source: ours; theory.md, section 11.
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -63,20 +64,21 @@ def _edge(groups: Groups) -> tuple[float, float]:
     return 1 - width, 1 + width
 
 
-@formula(
-    geometry="point",
-    predicts="gap",
+_large_indentation = partial(
+    formula,
     uses=("load", "relative_roughness"),
-    undefined="from the edge of the contact outwards, where this has no value",
     plane="rest",
+    geometry="point",
     limits=LARGE_INDENTATION,
-    worst=0.05,
     small="relative_roughness",
     error_order=1,
     approach=_smoother,
     steps=(1e-2, 1e-3, 1e-4),
-    interval=_contact,
-    source="ours",
+)
+
+
+@_large_indentation(
+    undefined="from the edge of the contact outwards, where this has no value", worst=0.05, interval=_contact, source="ours"
 )
 def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
     r"""Return the gap in the contact of a rough ball at rest.
@@ -86,16 +88,9 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
         h = -\kappa \ln\left[\bar F_N^{1/3} (1 - x^2)^{1/2}\right] \;
         \left(- \frac{\kappa^2 p_1(x)}{(1 - x^2)^{1/2}}\right)
 
-    Parameters
-    ----------
-    x : float or array_like
-        Positions, or distances from the middle [a].
-
     Notes
     -----
     Compared with the solver up to 0.9 of the radius; the edge has a layer of width kappa**(2/3).
-
-    Source: ours, see the module.
     """
     x = np.asarray(x, dtype=float)
     below = np.where(np.abs(x) < 1, (1 - x) * (1 + x), np.nan)
@@ -107,19 +102,7 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
     return np.asarray(leading - kappa**2 * pressure_correction(inside) / np.sqrt(below))
 
 
-@formula(
-    geometry="point",
-    predicts="central_gap",
-    uses=("load", "relative_roughness"),
-    plane="rest",
-    limits=LARGE_INDENTATION,
-    worst=0.062,
-    small="relative_roughness",
-    error_order=1,
-    approach=_smoother,
-    steps=(1e-2, 1e-3, 1e-4),
-    source="ours",
-)
+@_large_indentation(worst=0.062, source="ours")
 def central_gap(groups: Groups, terms: int = 1) -> Value:
     r"""Return the gap in the middle of a rough ball at rest.
 
@@ -128,8 +111,6 @@ def central_gap(groups: Groups, terms: int = 1) -> Value:
     Notes
     -----
     With both terms the error is 0.0002 kappa at kappa = 0.01 and falls as kappa**3 and its logarithm.
-
-    Source: ours, see the module.
     """
     kappa = np.asarray(groups.relative_roughness)
     leading: Array = -kappa * np.log(groups.load) / 3
@@ -137,19 +118,7 @@ def central_gap(groups: Groups, terms: int = 1) -> Value:
     return found
 
 
-@formula(
-    geometry="point",
-    predicts="offset",
-    uses=("load", "relative_roughness"),
-    plane="rest",
-    limits=LARGE_INDENTATION,
-    worst=2e-4,
-    small="relative_roughness",
-    error_order=1.9,
-    approach=_smoother,
-    steps=(1e-2, 1e-3, 1e-4),
-    source="ours",
-)
+@_large_indentation(worst=2e-4, error_order=1.9, source="ours; theory.md, section 11")
 def offset(groups: Groups, terms: int = 1) -> Value:
     r"""Return the offset of a rough ball at rest.
 
@@ -162,8 +131,6 @@ def offset(groups: Groups, terms: int = 1) -> Value:
     -----
     The ring at the edge has an energy, :math:`\tfrac{\pi^3}{24} \kappa^2 \ln \kappa`, whose derivative with respect to
     the load is the logarithm; the other number is measured.
-
-    Source: ours; theory.md, section 11.
     """
     kappa = np.asarray(groups.relative_roughness)
     leading: Array = -1 + kappa * (1 - np.log(groups.load) / 3)
@@ -174,13 +141,11 @@ def offset(groups: Groups, terms: int = 1) -> Value:
     return found
 
 
-@formula(
-    geometry="point",
-    predicts="gap",
-    uses=("load", "relative_roughness"),
+_at_edge = partial(
+    formula,
     plane="rest",
+    geometry="point",
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-5, 1e-2)),
-    worst=0.012,
     small="relative_roughness",
     error_order=2 / 3,
     approach=_smoother,
@@ -188,6 +153,9 @@ def offset(groups: Groups, terms: int = 1) -> Value:
     interval=_edge,
     source="ours, with the edge of the line",
 )
+
+
+@_at_edge(predicts="gap", uses=("load", "relative_roughness"), worst=0.012)
 def edge_gap(groups: Groups, x: Value) -> Value:
     r"""Return the gap at the edge of the contact of a rough ball at rest.
 
@@ -196,70 +164,44 @@ def edge_gap(groups: Groups, x: Value) -> Value:
         h = \kappa \left[-\tfrac13 \ln F - \tfrac13 \ln\frac{\pi\kappa}{4} + H(\xi)\right], \qquad
         \xi = \frac{|x| - 1 + \kappa}{(\pi\kappa/4)^{2/3}}
 
-    Parameters
-    ----------
-    x : float or ndarray
-        Positions near 1 or -1, or distances from the middle [a]; broadcast with the groups.
-
     Notes
     -----
     H is the layer of the line, :func:`stribeck.asymptotics.smooth.edge_layer.layer`.  Compared within 5 widths of the edge.
-
-    Source: ours, see the module.
     """
     kappa = groups.relative_roughness
     wide = np.multiply(math.pi / 4, kappa)
     return kappa * (-(np.log(groups.load) + np.log(wide)) / 3 + layer().gap(_coordinate(kappa, x)))
 
 
-@formula(
-    geometry="point",
-    predicts="contact_pressure",
-    uses=("relative_roughness",),
-    plane="rest",
-    limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-5, 1e-2)),
-    worst=0.07,
-    small="relative_roughness",
-    error_order=2 / 3,
-    approach=_smoother,
-    steps=(1e-2, 1e-3, 1e-4),
-    interval=_edge,
-    source="ours, with the edge of the line",
-)
+@_at_edge(predicts="contact_pressure", uses=("relative_roughness",), worst=0.07)
 def edge_contact_pressure(groups: Groups, x: Value) -> Value:
     r"""Return the contact pressure at the edge of the contact of a rough ball at rest.
 
     .. math:: p_c = \left(\frac{\pi\kappa}{4}\right)^{1/3} e^{-H(\xi)}, \qquad
         \xi = \frac{|x| - 1 + \kappa}{(\pi\kappa/4)^{2/3}}
 
-    Parameters
-    ----------
-    x : float or ndarray
-        Positions near 1 or -1, or distances from the middle [a]; broadcast with the groups.
-
     Notes
     -----
     Compared with the solver within 5 widths of the edge.
-
-    Source: ours, see the module.
     """
     kappa = groups.relative_roughness
     return np.power(math.pi / 4 * np.asarray(kappa), 1 / 3) * np.exp(-layer().gap(_coordinate(kappa, x)))
 
 
-@formula(
-    geometry="point",
-    predicts="central_gap",
+_small_indentation = partial(
+    formula,
     uses=("load", "relative_roughness"),
     plane="rest",
+    geometry="point",
     limits=SMALL_INDENTATION,
-    worst=0.006,
     small="1/relative_roughness",
-    error_order=1.5,
     approach=_rougher,
     steps=(0.2, 0.1, 0.05),
-    source="ours",
+    source="ours, as for the line",
 )
+
+
+@_small_indentation(predicts="central_gap", worst=0.006, error_order=1.5)
 def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
     r"""Return the gap in the middle of a very rough ball at rest, which is hardly deflected.
 
@@ -272,27 +214,13 @@ def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
     -----
     The pressure is Gaussian, :math:`e^{-r^2/(2\kappa)}/(3\kappa)`, on the rigid ball; the second term is the deflection in the
     middle less its mean over that pressure.
-
-    Source: ours, as for the line.
     """
     kappa = np.asarray(groups.relative_roughness)
     leading: Array = kappa * np.log(3 * kappa * np.power(groups.load, -1 / 3))
     return (leading + second(terms) * (4 - 2 * math.sqrt(2)) / (3 * np.sqrt(2 * math.pi * kappa)))[()]
 
 
-@formula(
-    geometry="point",
-    predicts="offset",
-    uses=("load", "relative_roughness"),
-    plane="rest",
-    limits=SMALL_INDENTATION,
-    worst=6e-5,
-    small="1/relative_roughness",
-    error_order=3,
-    approach=_rougher,
-    steps=(0.2, 0.1, 0.05),
-    source="ours",
-)
+@_small_indentation(predicts="offset", worst=6e-5, error_order=3)
 def offset_small_indentation(groups: Groups) -> Value:
     r"""Return the offset of a very rough ball at rest.
 
@@ -301,8 +229,6 @@ def offset_small_indentation(groups: Groups) -> Value:
     Notes
     -----
     The gap of the rigid ball less the mean of its deflection over the pressure.
-
-    Source: ours, as for the line.
     """
     kappa = np.asarray(groups.relative_roughness)
     return np.asarray(central_gap_small_indentation.function(groups) - 2 / (3 * np.sqrt(math.pi * kappa)))[()]

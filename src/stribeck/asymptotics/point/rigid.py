@@ -16,6 +16,7 @@ V = 2 U in Reynolds' equation; theory.md, section 11.
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -45,19 +46,19 @@ def gap_of(groups: Groups) -> Value:
     return found
 
 
-@formula(
-    geometry="point",
-    predicts="minimum_gap",
+_rigid = partial(
+    formula,
     uses=("speed",),
     plane="smooth",
-    limits=FAST_RANGE,
-    worst=8e-4,
+    geometry="point",
     small="1/speed",
-    error_order=1.2,
     approach=_fast,
     steps=(1e-2, 3e-3, 1e-3),
     source="ours",
 )
+
+
+@_rigid(limits=FAST_RANGE, worst=8e-4, error_order=1.2)
 def minimum_gap(groups: Groups) -> Value:
     r"""Return the gap of a fast smooth ball.
 
@@ -67,26 +68,11 @@ def minimum_gap(groups: Groups) -> Value:
     -----
     In other words :math:`F_N E^* h_0^{5/2} = \tfrac{243 \pi^3}{3200 \sqrt2} \, \eta^2 U^2 R^{5/2}`, with 1.6649.  The
     gap in the middle is larger by the deflection under the load, 3.5 % at speed 100.
-
-    Source: ours, see the module.
     """
     return gap_of(groups)
 
 
-@formula(
-    geometry="point",
-    predicts="fluid_pressure",
-    uses=("speed",),
-    plane="smooth",
-    limits=(Limit("speed", 3e2),),
-    worst=0.26,
-    small="1/speed",
-    error_order=0.6,
-    approach=_fast,
-    steps=(1e-2, 3e-3, 1e-3),
-    interval=_near,
-    source="ours",
-)
+@_rigid(limits=(Limit("speed", 3e2),), worst=0.26, error_order=0.6, interval=_near)
 def fluid_pressure(groups: Groups, x: Value) -> Value:
     r"""Return the fluid pressure of a fast smooth ball along its middle, to the order that carries no load.
 
@@ -102,7 +88,7 @@ def fluid_pressure(groups: Groups, x: Value) -> Value:
     Compared with the solver within three of its widths, :math:`h_0^{1/2}`.  The part even in x, which carries
     the load, is smaller by :math:`\lambda/h_0^2`.
 
-    Source: ours, see the module; far away it is :math:`-\tfrac45 \lambda x/r^4`.
+    Far away it is :math:`-\tfrac45 \lambda x/r^4`.
     """
     x = np.asarray(x, dtype=float)
     gap = gap_of(groups) + np.square(x) / 2

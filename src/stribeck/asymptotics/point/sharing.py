@@ -52,10 +52,10 @@ MAX_STEPS = 70  # Steps of the inversions; 10 are usual.
 
 
 @formula(
-    geometry="point",
-    predicts="contact_load_share",
     plane="mixed",
+    geometry="point",
     limits=(*FIT_RANGE, Limit("film_ratio", 0.0, 6.0)),
+    undefined="from load 1 and above roughness 100 on",
     worst=0.09,
     source="ours",
 )
@@ -64,16 +64,9 @@ def contact_load_share(groups: Groups) -> Value:
 
     .. math:: \lambda(S) = \left(\lambda_w^{-m} + \lambda_f^{-m}\right)^{-1/m}
 
-    Returns
-    -------
-    float or ndarray
-        S [-]; 1 at rest, 0 without roughness, nan from load 1 on and at relative roughness above 100.
-
     Notes
     -----
-    The inverse of :func:`speed_of_share`, by bracketed steps in ln X.
-
-    Source: this module.
+    S is 1 at rest and 0 without roughness.  The inverse of :func:`speed_of_share`, by bracketed steps in ln X.
     """
     return np.exp(-np.logaddexp(0.0, log_odds(groups)))[()]
 

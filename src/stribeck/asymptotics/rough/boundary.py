@@ -8,6 +8,7 @@ Source: [BP] Section "Boundary-to-mixed lubrication transition", Appendix C; the
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -59,18 +60,18 @@ def _slower(fluid_number: float) -> Groups:
     return Groups(fluid_number * 1e-12, 0.1, 1e-7)
 
 
-@formula(
-    predicts="fluid_load_share",
-    undefined="from load 1 on",
+_slow = partial(
+    formula,
     plane="mixed",
     limits=SMALL_SHARE_RANGE,
-    worst=0.07,
     small="relative_roughness",
     error_order=2 / 3,
     approach=_smoother,
     steps=(1e-3, 1e-4, 1e-5),
-    source="[BP] Eq. (fluid-normal-dl), with 2/pi",
 )
+
+
+@_slow(undefined="from load 1 on", worst=0.07, source="[BP] Eqs. (fluid-normal), (fluid-normal-dl), with 2/pi")
 def fluid_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bool = False) -> Value:
     r"""Return the part of the load that the fluid carries at slow speed.
 
@@ -88,8 +89,6 @@ def fluid_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bool
     -----
     With ``printed=True, form="printed"`` it is the formula of [BP] as printed.  The error, of order kappa**(2/3) with
     logarithms, comes from the edge of the contact, which is a layer of that width.
-
-    Source: [BP] Eqs. (fluid-normal), (fluid-normal-dl).
     """
     share = np.square(fluid_number(groups)) * phi_of(groups.load, form)
     if printed:
@@ -98,10 +97,9 @@ def fluid_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bool
     return share
 
 
-@formula(
-    predicts="contact_load_share",
-    plane="mixed",
+@_slow(
     limits=SLOW_RANGE,
+    undefined="from load 1 on",
     worst=0.017,
     small="fluid_number",
     error_order=4,
@@ -114,37 +112,14 @@ def contact_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bo
 
     .. math:: \frac{F_c}{F_N} = 1 - \frac{\lambda^2}{\kappa^4} \, \phi(\bar F_N)
 
-    Parameters
-    ----------
-    form : {"quadrature", "closed", "asymptote", "power", "printed"}
-        As in :func:`fluid_load_share`.
-    printed : bool
-        As in :func:`fluid_load_share`.
-
-    Returns
-    -------
-    float or ndarray
-        Load share [-], negative where the formula has long ceased to hold; nan from load 1 on.
-
     Notes
     -----
-    Source: [BP] Eq. (friction_contact).
+    Negative where the formula has long ceased to hold.
     """
     return 1 - fluid_load_share.function(groups, form, printed)
 
 
-@formula(
-    predicts="viscous_friction",
-    undefined="from load 1 on",
-    plane="mixed",
-    limits=SMALL_SHARE_RANGE,
-    worst=0.075,
-    small="relative_roughness",
-    error_order=2 / 3,
-    approach=_smoother,
-    steps=(1e-3, 1e-4, 1e-5),
-    source="stribeck.asymptotics.rough.boundary",
-)
+@_slow(undefined="from load 1 on", worst=0.075, source="theory.md, section 6")
 def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "published") -> Value:
     r"""Return the viscous friction at slow speed.
 
@@ -154,17 +129,12 @@ def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "publ
         \mu_f^\mathrm{published} &= \mu_f^\mathrm{balanced}
         + \frac{4 \beta \bar F_N^{1/2}}{\pi} \frac{\lambda}{\kappa^2} M(\bar F_N)
 
-    Parameters
-    ----------
-    viscous : {"published", "balanced", "neglected"}
-        Definition; or none of it.
-
     Notes
     -----
     [BP] state only that it goes as :math:`\eta U a/(F_N h_\mathrm{rms})`, which is true of the balanced definition; by their
     own it is larger by :math:`6 M/(S \kappa)`, 0.0701/kappa at load 0.1.
 
-    Source: theory.md, section 6; S and M are :func:`stribeck.asymptotics.rough.perturbation.shear` and ``pressure_moment``.
+    S and M are :func:`stribeck.asymptotics.rough.perturbation.shear` and ``pressure_moment``.
     """
     if viscous not in ("published", "balanced", "neglected"):
         raise InputError(f"viscous = {show(viscous)}; it must be 'balanced', 'published' or 'neglected'.")
@@ -177,17 +147,11 @@ def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "publ
     return friction
 
 
-@formula(
-    predicts="friction",
-    undefined="from load 1 on",
-    plane="mixed",
+@_slow(
     limits=(*SLOW_RANGE, Limit("beta/mu0", 0.0, 3.0)),
+    undefined="from load 1 on",
     worst=0.017,
-    small="relative_roughness",
-    error_order=2 / 3,
-    approach=_smoother,
-    steps=(1e-3, 1e-4, 1e-5),
-    source="[BP] Eq. (friction_contact), with its viscous part",
+    source="[BP] Eqs. (friction_contact), (fluid-normal-dl), with its viscous part",
 )
 def friction(
     groups: Groups,
@@ -203,10 +167,6 @@ def friction(
 
     Parameters
     ----------
-    viscous : {"published", "balanced", "neglected"}
-        Definition of the viscous part, as in :func:`viscous_friction`.
-    form : {"quadrature", "closed", "asymptote", "power", "printed"}
-        As in :func:`fluid_load_share`.
     printed : bool
         As in :func:`fluid_load_share`; what is printed has the viscous part neglected too.
 
@@ -215,8 +175,6 @@ def friction(
     The error, 1.4 % at most, is that of the asperities' part up to beta/mu0 = 3; at 10 the viscous part makes it 4.2 %.
     [BP] Eq. (friction_contact) is ``viscous="neglected"``.  In the paper's own definition the neglected part is of first order
     in the speed, and the load share of second.
-
-    Source: [BP] Eqs. (friction_contact), (fluid-normal-dl).
     """
     mu_f = viscous_friction.function(groups, beta, "neglected" if printed else viscous)
     return boundary_friction * contact_load_share.function(groups, form, printed) + mu_f

@@ -51,9 +51,9 @@ MAX_STEPS = 60  # Steps of the inversion; 6 are usual.
 @formula(
     predicts="speed_at_half_fluid",
     uses=("load", "roughness"),
-    undefined="from load 1 on, and without roughness",
     plane="mixed",
     limits=FIT_RANGE[1:],
+    undefined="from load 1 on, and without roughness",
     worst=0.105,
     source="ours",
 )
@@ -70,18 +70,13 @@ def speed_at_fluid_share(groups: Groups, share: float = 0.5) -> Value:
         \lambda_f &= \lambda_\mathrm{film}(\kappa H) \left(1 + p_1 \kappa^{p_2} H^{p_3}\right)
         \left(1 + p_5 \kappa^{p_6} H^{p_7}\right)^{p_4/(1 + p_8 (\kappa H)^{p_9})}
 
-    Parameters
-    ----------
-    share : float or array_like
-        Part of the load on the fluid [-], between 0 and 1.
-
     Notes
     -----
     For half of the load within 10 %, in the median 0.9 %; for 5 % of it within 27 % and 0.8 %, the worst at heavy loads and
     the largest roughness. The criterion :math:`\lambda^2 \phi/\kappa^4 = 1` of [BP], where the true share is 0.13 to 0.46,
     is the first order extrapolated.
 
-    Source: this module; the letters are the fitted coefficients of wedge, edge, film and sum.
+    The letters are the fitted coefficients of wedge, edge, film and sum.
     """
     wanted = real_array("share", share)
     if not ((wanted > 0) & (wanted < 1)).all():
@@ -91,27 +86,16 @@ def speed_at_fluid_share(groups: Groups, share: float = 0.5) -> Value:
 
 
 @formula(
-    predicts="contact_load_share",
-    plane="mixed",
-    limits=(*FIT_RANGE, Limit("film_ratio", 0.0, 12.0)),
-    worst=0.08,
-    source="ours",
+    plane="mixed", limits=(*FIT_RANGE, Limit("film_ratio", 0.0, 12.0)), undefined="from load 1 on", worst=0.08, source="ours"
 )
 def contact_load_share(groups: Groups) -> Value:
     r"""Return the part of the load on the asperities, the inverse of :func:`speed_at_fluid_share`.
 
     .. math:: \lambda(1 - S) = \lambda
 
-    Returns
-    -------
-    float or ndarray
-        S [-]; 1 at rest, 0 without roughness, nan from load 1 on.
-
     Notes
     -----
-    The inversion, by bracketed Newton steps in ln X, is converged to rounding.
-
-    Source: this module.
+    S is 1 at rest and 0 without roughness.  The inversion, by bracketed Newton steps in ln X, is converged to rounding.
     """
     return np.exp(-np.logaddexp(0.0, log_odds(groups)))[()]
 

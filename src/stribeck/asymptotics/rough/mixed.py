@@ -15,6 +15,7 @@ Source: [BP] Section "Hydrodynamic-to-mixed lubrication transition"; theory.md, 
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -39,12 +40,13 @@ SATURATION_COEFFICIENT = 1.85
 FIT_RANGE = (Limit("film_ratio", 3.0), Limit("relative_roughness", 1e-4, 0.1), Limit("load", 1e-3, 0.7))
 
 
-@formula(
-    predicts="contact_load_share",
-    plane="mixed",
+_mixed = partial(formula, plane="mixed")
+
+
+@_mixed(
     limits=(Limit("film_ratio", 3.0, 10.0), *FIT_RANGE[1:], Limit("speed", 0.0, 2.0)),
     worst=0.115,
-    source="ours; [BP] Eq. (contact_pressure_integral)",
+    source="ours; [BP] Eqs. (contact_pressure_integral) and (friction_hydro-mixed_transition_dl)",
 )
 def contact_load_share(groups: Groups, film: Film = "uniform", *, printed: bool = False) -> Value:
     r"""Return the part of the load that asperities carry through a film.
@@ -73,8 +75,6 @@ def contact_load_share(groups: Groups, film: Film = "uniform", *, printed: bool 
     ``"large"`` from 10 % below to 300 % above, 14 % in the median, and above where asperities thicken the film, at light
     loads and film ratios near 3; ``"central"`` from 86 % below to 300 % above, 25 % in the median: without the outlet the
     better central film is of no use.
-
-    Source: [BP] Eqs. (contact_pressure_integral) and (friction_hydro-mixed_transition_dl); ours for ``"uniform"``.
     """
     film = _film(film, printed)
     with np.errstate(all="ignore"):
@@ -94,12 +94,10 @@ def contact_load_share(groups: Groups, film: Film = "uniform", *, printed: bool 
         return found[()]
 
 
-@formula(
-    predicts="friction",
-    plane="mixed",
+@_mixed(
     limits=(FIT_RANGE[0], Limit("relative_roughness", 1e-4, 0.03), FIT_RANGE[2], Limit("beta/mu0", 0.01, 3.0)),
     worst=0.094,
-    source="ours; [BP] Eq. (friction_hydro-mixed_transition)",
+    source="ours; [BP] Eq. (friction_hydro-mixed_transition_dl)",
 )
 def friction(
     groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, film: Film = "uniform", *, printed: bool = False
@@ -122,16 +120,12 @@ def friction(
     printed : bool
         Whether ``film="large"`` with the constant 0.44 as printed.
 
-    Returns
-    -------
-    float or ndarray
-        Friction coefficient, by the definition of [BP] [-].
-
     Notes
     -----
-    The last term of ``"uniform"`` stands for what the definition of [BP] leaves out, the projection of the contact pressure on
-    the slope of the cylinder (theory.md, section 6): along the film :math:`h = h^* - c^2 \lambda^{1/5} h^* x/(1-x^2)^{1/2}`,
-    so that the contact pressure leans towards the outlet.  The balanced friction is without it.
+    By the definition of [BP].  The last term of ``"uniform"`` stands for what that definition leaves out, the projection of
+    the contact pressure on the slope of the cylinder (theory.md, section 6): along the film
+    :math:`h = h^* - c^2 \lambda^{1/5} h^* x/(1-x^2)^{1/2}`, so that the contact pressure leans towards the outlet.
+    The balanced friction is without it.
 
     Against the solver, in the range: ``"uniform"`` within 9.4 %, worst where all limits meet, at film ratio 3, load 1e-3,
     relative roughness 1e-4 and beta/mu0 3; 0.2 % in the median.  Where beta/mu0 is smaller, asperities count at film ratios
@@ -139,8 +133,6 @@ def friction(
     roughness 0.1: ``"uniform"`` within 3.5 % from film ratio 5 on; ``"central"`` from 28 % below to 290 % above, 7 % in the
     median; ``"large"`` from 76 % below, as the viscous friction of relative roughness 0.1 is beyond its limit, to 300 % above,
     31 % in the median.
-
-    Source: [BP] Eq. (friction_hydro-mixed_transition_dl); ours for ``"uniform"``.
     """
     film = _film(film, printed)
     share = contact_load_share.function(groups, film, printed=printed)

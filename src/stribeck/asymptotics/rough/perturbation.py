@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -157,17 +158,17 @@ def _contact(groups: Groups) -> tuple[float, float]:
     return -0.9, 0.9
 
 
-@formula(
-    predicts="flux_gap",
+_expansion = partial(
+    formula, plane="mixed", small="relative_roughness", error_order=2 / 3, approach=_slow, steps=(1e-3, 1e-4, 1e-5)
+)
+
+
+@_expansion(
     uses=("load", "relative_roughness"),
-    undefined="from load 1 on",
     plane="rest",
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-3)),
+    undefined="from load 1 on",
     worst=0.009,
-    small="relative_roughness",
-    error_order=2 / 3,
-    approach=_slow,
-    steps=(1e-3, 1e-4, 1e-5),
     source="[BP] Appendix D",
 )
 def flux_gap(groups: Groups) -> Value:
@@ -178,23 +179,17 @@ def flux_gap(groups: Groups) -> Value:
     Notes
     -----
     It has no term of first order in the speed.
-
-    Source: [BP] Appendix D.
     """
     return groups.relative_roughness * of_load(groups.load, lambda c: np.asarray((c.A + c.g_star)[..., 0, 0]))
 
 
-@formula(
+@_expansion(
     predicts="fluid_pressure",
-    plane="mixed",
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 1e-4)),
+    undefined="from load 1 on",
     worst=0.07,
-    small="relative_roughness",
-    error_order=2 / 3,
-    approach=_slow,
-    steps=(1e-3, 1e-4, 1e-5),
     interval=_contact,
-    source="[BP] Eq. (pf1), with the cube of Appendix D",
+    source="[BP] Eqs. (first-order_thin-film) and (pf1), which lack the cube that Appendix D has",
 )
 def fluid_pressure_first(groups: Groups, x: Value, printed: bool = False) -> Value:
     r"""Return the fluid pressure to first order in the speed, odd in x.
@@ -210,10 +205,6 @@ def fluid_pressure_first(groups: Groups, x: Value, printed: bool = False) -> Val
     -------
     float or ndarray
         Fluid pressure [p_Hz]; zero outside the contact, nan from load 1 on.
-
-    Notes
-    -----
-    Source: [BP] Eqs. (first-order_thin-film) and (pf1), which lack the cube that Appendix D has.
     """
     scale = groups.speed if printed else fluid_number(groups)
     return scale * _first_pressure(groups.load, x, 1 if printed else 3)
@@ -230,18 +221,14 @@ def _first_pressure(load: Value, x: Value, power: int = 3) -> Array:
     return np.where(x < 0, beyond, 2 * half - beyond)
 
 
-@formula(
+@_expansion(
     predicts="gap",
-    undefined="outside the contact, where this has no value, and from load 1 on",
-    plane="mixed",
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-3), Limit("paper_fluid_share", 0, 0.1)),
+    undefined="outside the contact, where this has no value, and from load 1 on",
     worst=0.06,
-    small="relative_roughness",
     error_order=1,
-    approach=_slow,
-    steps=(1e-3, 1e-4, 1e-5),
     interval=_contact,
-    source="[BP] Eq. (h1)",
+    source="[BP] Eqs. (central_region_contact) and (h1)",
 )
 def gap_first(groups: Groups, x: Value) -> Value:
     r"""Return the gap in the contact to first order in the speed.
@@ -252,8 +239,7 @@ def gap_first(groups: Groups, x: Value) -> Value:
     -----
     The part odd in x is the second term.
 
-    Source: [BP] Eqs. (central_region_contact) and (h1).  They print h_1 ~ kappa for 1/kappa, and the step function of p_0 the
-    wrong way round.
+    They print h_1 ~ kappa for 1/kappa, and the step function of p_0 the wrong way round.
     """
     x = np.asarray(x, dtype=float)
     below = np.where(np.abs(x) < 1, (1 - x) * (1 + x), np.nan)
@@ -262,17 +248,13 @@ def gap_first(groups: Groups, x: Value) -> Value:
     return kappa * H_0 + groups.speed / kappa * _first_pressure(groups.load, x) / np.sqrt(below)
 
 
-@formula(
+@_expansion(
     predicts="fluid_pressure",
-    plane="mixed",
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 0.01)),
+    undefined="from load 1 on",
     worst=0.085,
-    small="relative_roughness",
-    error_order=2 / 3,
-    approach=_slow,
-    steps=(1e-3, 1e-4, 1e-5),
     interval=_contact,
-    source="[BP] Eqs. (pf1), (p2)",
+    source="[BP] Eqs. (pf1), with cubed denominator, and (p2)",
 )
 def fluid_pressure_second(groups: Groups, x: Value) -> Value:
     r"""Return the fluid pressure to second order in the speed.
@@ -282,16 +264,9 @@ def fluid_pressure_second(groups: Groups, x: Value) -> Value:
         p_f = \frac{\lambda}{\kappa^2} P_{f,1} + \frac{\lambda^2}{\kappa^4} P_{f,2}, \quad
         P_{f,2} = \int_{-1}^x \frac{(3 H_0^* - 2 H_0) H_1}{H_0^4} \, dy
 
-    Returns
-    -------
-    float or ndarray
-        Fluid pressure [p_Hz]; zero outside the contact, nan from load 1 on.
-
     Notes
     -----
-    The part even in x is the second term, which carries load.
-
-    Source: [BP] Eqs. (pf1), with cubed denominator, and (p2).
+    Zero outside the contact.  The part even in x is the second term, which carries load.
     """
     number = fluid_number(groups)
     A, x = half_logarithm(groups.load), np.asarray(x, dtype=float)

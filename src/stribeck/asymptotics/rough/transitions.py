@@ -17,6 +17,7 @@ Source: [BP] Sections "Hydrodynamic-to-mixed lubrication transition", "Boundary-
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -55,14 +56,11 @@ __all__ = [
 FIT_RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-5, 0.01), Limit("beta/mu0", 1e-3, 1.0))
 
 
-@formula(
-    predicts="separation_at_minimum",
-    uses=("load", "roughness"),
-    undefined="where the form has no minimum",
-    plane="mixed",
-    limits=FIT_RANGE,
-    worst=0.044,
-    source="ours; [BP] Eqs. (Lambda_solution) and (Lambda_asymptotic)",
+_at_minimum = partial(formula, uses=("load", "roughness"), plane="mixed", limits=FIT_RANGE)
+
+
+@_at_minimum(
+    undefined="where the form has no minimum", worst=0.044, source="ours; [BP] Eqs. (Lambda_solution) and (Lambda_asymptotic)"
 )
 def separation_at_minimum(
     groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, form: Form = "uniform", *, printed: bool = False
@@ -88,8 +86,6 @@ def separation_at_minimum(
     Against the central gap of the solver, in the range: ``"uniform"`` within 2.2 % for beta/mu0 = 1 and 4.4 % for 1e-3, 0.2
     and 0.6 % in the median; beyond, 6 % at 1e-4, 9 % at 3 and 20 % at 10.  For mu0 = beta = 1 ``"exact"`` and ``"expansion"``
     within 1.1 % and 1.5 % at relative roughness 1e-4, up to 13 % above at 0.01; ``"leading"`` up to 10 % below.
-
-    Source: [BP] Eqs. (Lambda_solution) and (Lambda_asymptotic).
     """
     form = "expansion" if printed else checked_form(form)
     if form == "uniform":
@@ -106,14 +102,10 @@ def separation_at_minimum(
         return (leading if form == "leading" else leading + np.log(leading) / 3)[()]
 
 
-@formula(
-    predicts="speed_at_minimum",
-    uses=("load", "roughness"),
+@_at_minimum(
     undefined="where the form has no minimum",
-    plane="mixed",
-    limits=FIT_RANGE,
     worst=0.069,
-    source="ours; [BP] Eq. (lambda_min)",
+    source="ours; [BP] Eq. (lambda_min), which neglects the logarithm of a logarithm",
 )
 def speed_at_minimum(
     groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, form: Form = "uniform", *, printed: bool = False
@@ -134,8 +126,6 @@ def speed_at_minimum(
     Against the solver, in the range: ``"uniform"`` within 1.9 % for beta/mu0 = 1 and 6.9 % for 1e-3, 0.3 and 1.1 % in the
     median; beyond, 9 % at 1e-4, 10 % at 3 and 27 % at 10.  For mu0 = beta = 1 ``"exact"`` within 1.1 % at relative roughness
     1e-4, up to 35 % above at 0.01; as printed from 14 % below to 12 % above, as its two errors cancel.
-
-    Source: [BP] Eq. (lambda_min), which neglects the logarithm of a logarithm.
     """
     form = "leading" if printed else checked_form(form)
     kappa = groups.relative_roughness
@@ -150,14 +140,10 @@ def speed_at_minimum(
         return np.power(kappa * ratio / c, 5 / 3)
 
 
-@formula(
-    predicts="friction_at_minimum",
-    uses=("load", "roughness"),
+@_at_minimum(
     undefined="where the form has no minimum",
-    plane="mixed",
-    limits=FIT_RANGE,
     worst=0.049,
-    source="ours; [BP] Eq. (minimal_friction)",
+    source="ours; [BP] Eq. (minimal_friction), with the sign of the second exponent corrected",
 )
 def friction_at_minimum(
     groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, form: Form = "uniform", *, printed: bool = False
@@ -184,8 +170,7 @@ def friction_at_minimum(
     load on asperities; beyond, 6.1 % at 1e-4 and 2.7 % at 10.  For mu0 = beta = 1 ``"exact"`` 6 to 8 % below at relative
     roughness 1e-4, 36 to 50 % at 0.01, an error that goes about as its square root; as printed 82 to 95 % below.
 
-    Source: [BP] Eq. (minimal_friction), with the sign of the second exponent corrected; it follows from Eqs.
-    (friction_hydro-mixed_transition_dl) and (Lambda_solution).
+    [BP] Eq. (minimal_friction) follows from Eqs. (friction_hydro-mixed_transition_dl) and (Lambda_solution).
     """
     form = "leading" if printed else checked_form(form)
     c = PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT
@@ -208,9 +193,9 @@ def friction_at_minimum(
 @formula(
     predicts="speed_at_half_fluid",
     uses=("load", "roughness"),
-    undefined="from load 1 on",
     plane="mixed",
     limits=(Limit("load", 1e-4, 0.1), Limit("relative_roughness", 1e-5, 1e-3)),
+    undefined="from load 1 on",
     worst=0.72,
     source="[BP] Eq. (boundary-to-mixed)",
 )
@@ -230,9 +215,9 @@ def speed_boundary_to_mixed(groups: Groups, *, printed: bool = False) -> Value:
     carries 46 to 24 % of it for loads 1e-3 to 0.1, so that half of it is carried at a speed 1.1 to 3.5 times higher, which is
     the error stated for this formula; at load 0.5, 13 % and 14 to 15 times.
 
-    Source: [BP] Eq. (boundary-to-mixed), with phi of :func:`stribeck.asymptotics.rough.perturbation.phi`.  The printed phi has
-    the exponent 5 for -5 and lacks 2/pi.  [BP] Eq. (speed_boundary-to-mixed) of the Conclusion prints another variant,
-    :math:`\kappa^2 (-0.5 \ln \bar F_N)^{-5/2}`: with the factor 0.5 in the power, and with the wrong sign of that too; from
+    The printed phi has the exponent 5 for -5 and lacks 2/pi.  [BP] Eq. (speed_boundary-to-mixed) of the Conclusion prints
+    another variant, :math:`\kappa^2 (-0.5 \ln \bar F_N)^{-5/2}`: with the factor 0.5 in the power, and with
+    the wrong sign of that too; from
     :math:`\phi \approx \tfrac12 (-\ln \bar F_N)^{-5}` follows :math:`\sqrt2 \kappa^2 (-\ln \bar F_N)^{5/2}`.
     """
     with np.errstate(all="ignore"):

@@ -10,6 +10,7 @@ Source: ours; theory.md, section 10.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -30,13 +31,14 @@ FIRST_MOMENT_COEFFICIENTS = (0.3524, 0.7752, 0.4341, 1.0889, 4.999)
 MOMENT_COEFFICIENTS = (0.9251, 3.692, 11.52, 0.4319, 7.886, 0.7303, 1.237)  # Fitted coefficients of the moment at any speed.
 
 
-@formula(
-    predicts="viscous_friction",
-    undefined="from load 1 on",
-    plane="mixed",
+_uniform = partial(formula, plane="mixed")
+
+
+@_uniform(
     limits=(*FIT_RANGE, Limit("film_ratio", 0.0, 12.0)),
+    undefined="from load 1 on",
     worst=0.75,
-    source="ours",
+    source="ours, with S, G and the film's speed of :mod:`load_sharing`",
 )
 def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition = "published") -> Value:
     r"""Return the part of the friction from the fluid.
@@ -49,38 +51,24 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
         q &= \frac{b_1 + b_2/G}{1 + b_3 \kappa^{b_4}}, \quad G_0 = -\tfrac12 \ln \bar F_N \\
         M(G) &= m_1 G^{-m_2} (1 + m_3 G)^{-m_4} (1 + m_5 G)^{m_2 + m_4 - 3}
 
-    Parameters
-    ----------
-    definition : {"balanced", "published"}
-        As the paper defines it, or without the moment mu_m as the force on the substrate.
-
     Notes
     -----
     Where asperities carry nothing it is :func:`hydrodynamic.friction_uniform`. The stated error is relative to itself, largest
     where it is a small part of all friction; in the median 3 %.
-
-    Source: this module, with S, G and the film's speed of :mod:`load_sharing`.
     """
     return _viscous(groups, log_odds(groups), beta, definition)[()]
 
 
-@formula(
-    predicts="friction",
-    undefined="from load 1 on",
-    plane="mixed",
+@_uniform(
     limits=(*FIT_RANGE, Limit("beta/mu0", 1e-3, 1.0)),
+    undefined="from load 1 on",
     worst=0.075,
-    source="ours",
+    source="ours: :func:`viscous_friction` and :func:`load_sharing.contact_load_share`",
 )
 def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "published") -> Value:
     r"""Return the friction coefficient.
 
     .. math:: \mu = \mu_0 S + \mu_f
-
-    Parameters
-    ----------
-    definition : {"balanced", "published"}
-        As in :func:`viscous_friction`.
 
     Notes
     -----
@@ -88,8 +76,6 @@ def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, 
     7.2 % for beta/mu0 from 1e-3 to 1.  Below, the share of asperities counts where little of it is left, and the worst
     error is 11 % at 1e-4; above, the viscous part counts in the boundary regime, and it is 13 % at 3 and 29 % at 10 by the
     definition of the paper, and within 7 % up to 30 by the balanced one (validity.md has the table).
-
-    Source: :func:`viscous_friction` and :func:`load_sharing.contact_load_share`.
     """
     odds = log_odds(groups)
     share = np.exp(-np.logaddexp(0.0, odds))

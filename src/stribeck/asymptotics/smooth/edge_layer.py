@@ -23,7 +23,7 @@ Source: [BP] Appendix B, with the principal value of 1/(xi - eta) for the printe
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -55,19 +55,20 @@ def _coordinate(groups: Groups, x: Value, printed: bool) -> Array:
     return np.divide(np.abs(x) - edge, kappa ** (2 / 3))
 
 
-@formula(
-    predicts="gap",
-    uses=("load", "relative_roughness"),
+_edge = partial(
+    formula,
     plane="rest",
     limits=LAYER_RANGE,
-    worst=0.025,
     small="relative_roughness",
     error_order=2 / 3,
     approach=_rough,
     steps=(1e-3, 1e-4, 1e-5),
     interval=_interval,
-    source="[BP] Appendix B, edge at 1 - kappa ours",
+    source="[BP] Appendix B; the edge at 1 - kappa is ours",
 )
+
+
+@_edge(uses=("load", "relative_roughness"), worst=0.025)
 def gap(groups: Groups, x: Value, printed: bool = False) -> Value:
     r"""Return the gap at the edges of a rough contact at rest.
 
@@ -76,8 +77,6 @@ def gap(groups: Groups, x: Value, printed: bool = False) -> Value:
 
     Parameters
     ----------
-    x : float or ndarray
-        Positions near 1 or -1 [a]; broadcast with the groups.
     printed : bool
         Put the edge at 1 as [BP] do, and not at 1 - kappa.
 
@@ -85,27 +84,13 @@ def gap(groups: Groups, x: Value, printed: bool = False) -> Value:
     -----
     Within 5 widths of the edge the error is below 2.5 % of the largest gap there for kappa up to 0.01 and falls as
     kappa**(2/3); as printed it is below 8 % and falls as kappa**(1/3) only.  H(0) is :data:`.constants.EDGE_GAP`.
-
-    Source: [BP] Appendix B; the edge at 1 - kappa from the second term of the pressure in the contact, above.
     """
     kappa = groups.relative_roughness
     H = layer().gap(_coordinate(groups, x, printed))
     return kappa * (-0.5 * np.log(groups.load) - np.log(kappa) / 3 + H)
 
 
-@formula(
-    predicts="contact_pressure",
-    uses=("relative_roughness",),
-    plane="rest",
-    limits=LAYER_RANGE,
-    worst=0.07,
-    small="relative_roughness",
-    error_order=2 / 3,
-    approach=_rough,
-    steps=(1e-3, 1e-4, 1e-5),
-    interval=_interval,
-    source="[BP] Appendix B, edge at 1 - kappa ours",
-)
+@_edge(uses=("relative_roughness",), worst=0.07)
 def contact_pressure(groups: Groups, x: Value, printed: bool = False) -> Value:
     r"""Return the contact pressure at the edges of a rough contact at rest.
 
@@ -113,8 +98,6 @@ def contact_pressure(groups: Groups, x: Value, printed: bool = False) -> Value:
 
     Parameters
     ----------
-    x : float or ndarray
-        Positions near 1 or -1 [a]; broadcast with the groups.
     printed : bool
         Put the edge at 1 as [BP] do, and not at 1 - kappa.
 
@@ -122,8 +105,6 @@ def contact_pressure(groups: Groups, x: Value, printed: bool = False) -> Value:
     -----
     Within 5 widths of the edge the error is below 7 % of the largest pressure there for kappa up to 0.01 and falls as
     kappa**(2/3); as printed it is below 9 % and falls as kappa**(1/3) only.
-
-    Source: [BP] Appendix B; the edge at 1 - kappa from the second term of the pressure in the contact, above.
     """
     kappa = groups.relative_roughness
     return kappa ** (1 / 3) * np.exp(-layer().gap(_coordinate(groups, x, printed)))

@@ -21,7 +21,7 @@ Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner, Phys. Fl
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -51,136 +51,73 @@ def _at_outlet(groups: Groups) -> tuple[float, float]:
     return 1 - width, 1 + width
 
 
-@formula(
-    predicts="gap",
+_layer = partial(
+    formula,
     uses=("speed",),
     plane="smooth",
     limits=SLOW_RANGE,
-    worst=0.04,
     small="speed",
     error_order=0.4,
     approach=_smooth,
     steps=ORDER_SPEEDS,
-    interval=_at_inlet,
     source="[BP] Section 'Smooth limit', after Snoeijer, Eggers and Venner (2013); solved here",
 )
+
+
+@_layer(predicts="gap", worst=0.04, interval=_at_inlet)
 def gap_inlet(groups: Groups, x: Value) -> Value:
     r"""Return the gap of a slow smooth film at its inlet.
 
     .. math:: h = \lambda^{3/5} H_\mathrm{in}(\xi), \qquad \xi = -\frac{x + 1}{\lambda^{2/5}}
-
-    Parameters
-    ----------
-    x : float or ndarray
-        Positions near -1 [a]; broadcast with the groups.
 
     Notes
     -----
     Within 5 widths lambda**(2/5) of the edge the error is below 4 % of the largest gap there for speeds up to 0.001 and
     falls as lambda**(2/5).  Inside, H tends
     to :data:`.constants.FILM_CONSTANT`.
-
-    Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner (2013).
     """
     return groups.speed**0.6 * inlet().gap(np.divide(np.subtract(-1.0, x), groups.speed**0.4))
 
 
-@formula(
-    predicts="gap",
-    uses=("speed",),
-    plane="smooth",
-    limits=SLOW_RANGE,
-    worst=0.055,
-    small="speed",
-    error_order=0.4,
-    approach=_smooth,
-    steps=ORDER_SPEEDS,
-    interval=_at_outlet,
-    source="[BP] Section 'Smooth limit', after Snoeijer, Eggers and Venner (2013); solved here",
-)
+@_layer(predicts="gap", worst=0.055, interval=_at_outlet)
 def gap_outlet(groups: Groups, x: Value) -> Value:
     r"""Return the gap of a slow smooth film at its outlet.
 
     .. math:: h = \lambda^{3/5} H_\mathrm{out}(\xi), \qquad \xi = \frac{x - 1}{\lambda^{2/5}}
-
-    Parameters
-    ----------
-    x : float or ndarray
-        Positions near 1 [a]; broadcast with the groups.
 
     Notes
     -----
     Within 5 widths lambda**(2/5) of the edge the error is below 5.5 % of the largest gap there for speeds up to 0.001 and
     falls as lambda**(2/5).  The minimum gap is
     :data:`.constants.MINIMUM_CONSTANT` lambda**(3/5), at x = 1 + :data:`.constants.MINIMUM_POSITION` lambda**(2/5).
-
-    Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner (2013).
     """
     return groups.speed**0.6 * outlet().gap(np.divide(np.subtract(x, 1.0), groups.speed**0.4))
 
 
-@formula(
-    predicts="fluid_pressure",
-    uses=("speed",),
-    plane="smooth",
-    limits=SLOW_RANGE,
-    worst=0.09,
-    small="speed",
-    error_order=0.4,
-    approach=_smooth,
-    steps=ORDER_SPEEDS,
-    interval=_at_inlet,
-    source="[BP] Section 'Smooth limit', after Snoeijer, Eggers and Venner (2013); solved here",
-)
+@_layer(predicts="fluid_pressure", worst=0.09, interval=_at_inlet)
 def fluid_pressure_inlet(groups: Groups, x: Value) -> Value:
     r"""Return the fluid pressure of a slow smooth film at its inlet.
 
     .. math:: p_f = \lambda^{1/5} P_\mathrm{in}(\xi), \qquad \xi = -\frac{x + 1}{\lambda^{2/5}}
 
-    Parameters
-    ----------
-    x : float or ndarray
-        Positions near -1 [a]; broadcast with the groups.
-
     Notes
     -----
     Within 5 widths lambda**(2/5) of the edge the error is below 9 % of the largest pressure there for speeds up to 0.001 and
     falls as lambda**(2/5).
-
-    Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner (2013).
     """
     return groups.speed**0.2 * inlet().pressure(np.divide(np.subtract(-1.0, x), groups.speed**0.4))
 
 
-@formula(
-    predicts="fluid_pressure",
-    uses=("speed",),
-    plane="smooth",
-    limits=SLOW_RANGE,
-    worst=0.095,
-    small="speed",
-    error_order=0.4,
-    approach=_smooth,
-    steps=ORDER_SPEEDS,
-    interval=_at_outlet,
-    source="[BP] Section 'Smooth limit', after Snoeijer, Eggers and Venner (2013); solved here",
-)
+@_layer(predicts="fluid_pressure", worst=0.095, interval=_at_outlet)
 def fluid_pressure_outlet(groups: Groups, x: Value) -> Value:
     r"""Return the fluid pressure of a slow smooth film at its outlet.
 
     .. math:: p_f = \lambda^{1/5} P_\mathrm{out}(\xi), \qquad \xi = \frac{x - 1}{\lambda^{2/5}}
 
-    Parameters
-    ----------
-    x : float or ndarray
-        Positions near 1 [a]; broadcast with the groups.
-
     Notes
     -----
     Within 5 widths lambda**(2/5) of the edge the error is below 9.5 % of the largest pressure there for speeds up to 0.001 and
     falls as lambda**(2/5).
-
-    Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner (2013).
     """
     return groups.speed**0.2 * outlet().pressure(np.divide(np.subtract(x, 1.0), groups.speed**0.4))
 

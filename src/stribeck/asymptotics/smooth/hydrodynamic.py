@@ -10,6 +10,7 @@ Source: [BP] Section "General model of the hydrodynamic friction" for :func:`fri
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -55,13 +56,11 @@ FRICTION_COEFFICIENTS = (3.69, 2.09, -1.10)
 MAX_U = 1e50  # u up to which the laws are taken in powers of u, which overflow from 1e77 on.
 
 
-@formula(
-    predicts="central_gap",
-    uses=("speed",),
-    plane="smooth",
-    limits=(),
-    worst=0.0028,
-    source="ours",
+_any_speed = partial(formula, uses=("speed",), plane="smooth", limits=())
+
+
+@_any_speed(
+    worst=0.0028, source="ours; [BP] Eqs. (central_thickness_large) and (film_thickness_small_deformation) are its ends"
 )
 def central_gap(groups: Groups) -> Value:
     r"""Return the gap at x = 0 at any speed.
@@ -76,22 +75,13 @@ def central_gap(groups: Groups) -> Value:
     Exact as the speed tends to zero, with the next term :math:`1 + s \lambda^{2/5}`, s = 0.245, and as it tends to infinity,
     where it becomes :func:`central_gap_small`.  In between :math:`d_1, d_2, d_3, b_2` = -0.841, 0.511, 0.032, 0.273 are
     fitted.  Largest error 0.27 %, at speed 0.7, on 241 speeds from 1e-12 to 1e8.
-
-    Source: ours; [BP] Eqs. (central_thickness_large) and (film_thickness_small_deformation) are its ends.
     """
     u = np.power(groups.speed, 0.4)
     far = 1 / (576 * FILM_CONSTANT**6)
     return FILM_CONSTANT * groups.speed**0.6 * _bridge(u, far, CENTRAL_GAP_COEFFICIENTS)
 
 
-@formula(
-    predicts="flux_gap",
-    uses=("speed",),
-    plane="smooth",
-    limits=(),
-    worst=0.0004,
-    source="ours",
-)
+@_any_speed(worst=0.0004, source="ours; [BP] Eqs. (hstar) and (fields_small_deformation) give its ends")
 def flux_gap(groups: Groups) -> Value:
     r"""Return the flux gap h* at any speed.
 
@@ -106,21 +96,14 @@ def flux_gap(groups: Groups) -> Value:
     Exact as the speed tends to zero, with the next term :math:`1 + s \lambda^{2/5}`, s = 0.245, and as it tends to infinity,
     where it becomes :func:`flux_gap_small`.  In between :math:`d_1, d_2, d_3, b_2` = -0.882, 0.574, 0.127, -0.442 are fitted.
     Largest error 0.04 %, on 241 speeds from 1e-12 to 1e8.
-
-    Source: ours; [BP] Eqs. (hstar) and (fields_small_deformation) give its ends.
     """
     u = np.power(groups.speed, 0.4)
     far = (4 / 3) ** 6 / (576 * FILM_CONSTANT**6)
     return FILM_CONSTANT * groups.speed**0.6 * _bridge(u, far, FLUX_GAP_COEFFICIENTS)
 
 
-@formula(
-    predicts="viscous_friction",
-    uses=("speed", "load"),
-    plane="smooth",
-    limits=(),
-    worst=0.072,
-    source="[BP] Eq. (interpolated_hydrodynamic_friction)",
+@_any_speed(
+    predicts="viscous_friction", uses=("speed", "load"), worst=0.072, source="[BP] Eq. (interpolated_hydrodynamic_friction)"
 )
 def friction(groups: Groups, beta: float = 1.0) -> Value:
     r"""Return the viscous friction at any speed by the interpolation of the paper.
@@ -130,19 +113,15 @@ def friction(groups: Groups, beta: float = 1.0) -> Value:
     Notes
     -----
     Between 7.2 % below the solver (at speed 0.003) and 1.2 % above it; :func:`friction_uniform` is within 0.3 %.
-
-    Source: [BP] Eq. (interpolated_hydrodynamic_friction).
     """
     return np.hypot(friction_small.function(groups, beta), friction_large.function(groups, beta))
 
 
-@formula(
+@_any_speed(
     predicts="viscous_friction",
     uses=("speed", "load"),
-    plane="smooth",
-    limits=(),
     worst=0.00225,
-    source="ours",
+    source="ours; [BP] Eqs. (hydrofriction_large) and (hydrofriction_small) are its ends",
 )
 def friction_uniform(groups: Groups, beta: float = 1.0) -> Value:
     r"""Return the viscous friction at any speed.
@@ -157,8 +136,6 @@ def friction_uniform(groups: Groups, beta: float = 1.0) -> Value:
     Exact as the speed tends to zero, with the next term :math:`1 + s \lambda^{2/5}`, s = 4.0, and as it tends to
     infinity.  In between :math:`b, e_1, e_2` = 3.69, 2.09, -1.10 are fitted.  Largest error 0.23 %, on 241 speeds from 1e-12
     to 1e8.
-
-    Source: ours; [BP] Eqs. (hydrofriction_large) and (hydrofriction_small) are its ends.
     """
     slow = friction_large.function(groups, beta)
     far = (math.sqrt(2) * math.pi * 24 ** (1 / 6) * FILM_CONSTANT) ** 1.5

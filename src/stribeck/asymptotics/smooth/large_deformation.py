@@ -9,6 +9,7 @@ Source: [BP] Section "Large deformation limit"; theory.md, section 7.
 from __future__ import annotations
 
 import math
+from functools import partial
 
 from stribeck.asymptotics.constants import FILM_CONSTANT, MINIMUM_CONSTANT, PRINTED_FILM_CONSTANT
 from stribeck.asymptotics.formula import Limit, Value, formula
@@ -21,17 +22,22 @@ def _at_speed(speed: float) -> Groups:
     return Groups(speed, 0.1, 0.0)
 
 
-@formula(
-    predicts="central_gap",
+_slow = partial(
+    formula,
     uses=("speed",),
     plane="smooth",
     limits=SLOW_RANGE,
-    worst=0.015,
     small="speed",
     error_order=0.4,
     approach=_at_speed,
     steps=(1e-9, 1e-8, 1e-7),
-    source="[BP] Eq. (central_thickness_large)",
+)
+
+
+@_slow(
+    predicts="central_gap",
+    worst=0.015,
+    source="[BP] Eq. (central_thickness_large), with c = 0.44583 for the printed 0.44, which is 1.3 % low",
 )
 def central_gap_large(groups: Groups, *, printed: bool = False) -> Value:
     r"""Return the gap at x = 0 at large deformation, speed group -> 0.
@@ -46,24 +52,11 @@ def central_gap_large(groups: Groups, *, printed: bool = False) -> Value:
     Notes
     -----
     The next term, relative to it, is 0.245 lambda**(2/5).
-
-    Source: [BP] Eq. (central_thickness_large), with c = 0.44583 for the printed 0.44, which is 1.3 % low.
     """
     return (PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT) * groups.speed**0.6
 
 
-@formula(
-    predicts="flux_gap",
-    uses=("speed",),
-    plane="smooth",
-    limits=SLOW_RANGE,
-    worst=0.015,
-    small="speed",
-    error_order=0.4,
-    approach=_at_speed,
-    steps=(1e-9, 1e-8, 1e-7),
-    source="[BP] below Eq. (hstar)",
-)
+@_slow(predicts="flux_gap", worst=0.015, source="[BP] below Eq. (hstar), with c = 0.44583 for the printed 0.44")
 def flux_gap_large(groups: Groups) -> Value:
     r"""Return the flux gap at large deformation, speed group -> 0.
 
@@ -72,23 +65,14 @@ def flux_gap_large(groups: Groups) -> Value:
     Notes
     -----
     As :func:`central_gap_large`; the two differ by less than 1e-3 even at the end of the range.
-
-    Source: [BP] below Eq. (hstar), with c = 0.44583 for the printed 0.44.
     """
     return FILM_CONSTANT * groups.speed**0.6
 
 
-@formula(
+@_slow(
     predicts="minimum_gap",
-    uses=("speed",),
-    plane="smooth",
-    limits=SLOW_RANGE,
     worst=0.012,
-    small="speed",
-    error_order=0.4,
-    approach=_at_speed,
-    steps=(1e-9, 1e-8, 1e-7),
-    source="ours",
+    source="ours; :mod:`stribeck.asymptotics.smooth.film_layers` solves the outlet by itself",
 )
 def minimum_gap_large(groups: Groups) -> Value:
     r"""Return the minimum gap, at the outlet, at large deformation, speed group -> 0.
@@ -98,23 +82,16 @@ def minimum_gap_large(groups: Groups) -> Value:
     Notes
     -----
     The next term, relative to it, is 0.191 lambda**(2/5).  Without cavitation, as the whole model.
-
-    Source: ours, from the solver; :mod:`stribeck.asymptotics.smooth.film_layers` solves the outlet by itself.
     """
     return MINIMUM_CONSTANT * groups.speed**0.6
 
 
-@formula(
+@_slow(
     predicts="viscous_friction",
     uses=("speed", "load"),
-    plane="smooth",
     limits=(Limit("speed", 0.0, 1e-4),),
     worst=0.083,
-    small="speed",
-    error_order=0.4,
-    approach=_at_speed,
-    steps=(1e-9, 1e-8, 1e-7),
-    source="[BP] Eq. (hydrofriction_large)",
+    source="[BP] Eq. (hydrofriction_large), with c = 0.44583 for the printed 0.44",
 )
 def friction_large(groups: Groups, beta: float = 1.0, *, printed: bool = False) -> Value:
     r"""Return the viscous friction at large deformation, speed group -> 0.
@@ -130,9 +107,8 @@ def friction_large(groups: Groups, beta: float = 1.0, *, printed: bool = False) 
     -----
     The next term, relative to it, is 4.0 lambda**(2/5), so that the law is 8 % low at speed 1e-4.
 
-    Source: [BP] Eq. (hydrofriction_large), with c = 0.44583 for the printed 0.44 and the scale (F_N/(E* R))**(1/2) for
-    the printed (F_N R/E*)**(1/2), which has a dimension and is therefore no function of the groups; ``printed`` changes the
-    constant only.
+    The printed scale (F_N R/E*)**(1/2) has a dimension and is no function of the groups: it is (F_N/(E* R))**(1/2) here, and
+    ``printed`` changes the constant only.
     """
     c = PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT
     return 4 / (3 * math.pi * c) * beta * groups.load**0.5 * groups.speed**0.4

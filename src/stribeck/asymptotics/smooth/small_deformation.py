@@ -9,6 +9,7 @@ Source: [BP] Section "Small deformation limit"; theory.md, section 7.
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -29,18 +30,19 @@ def _four_widths(groups: Groups) -> tuple[float, float]:
     return -half, half
 
 
-@formula(
-    predicts="central_gap",
+_fast = partial(
+    formula,
     uses=("speed",),
     plane="smooth",
     limits=FAST_RANGE,
-    worst=0.021,
     small="1/speed",
     error_order=2 / 3,
     approach=_at_inverse_speed,
     steps=(1e-5, 1e-4, 1e-3),
-    source="[BP] Eq. (film_thickness_small_deformation)",
 )
+
+
+@_fast(predicts="central_gap", worst=0.021, source="[BP] Eq. (film_thickness_small_deformation)")
 def central_gap_small(groups: Groups) -> Value:
     r"""Return the gap at x = 0 at small deformation, speed group -> infinity.
 
@@ -49,24 +51,11 @@ def central_gap_small(groups: Groups) -> Value:
     Notes
     -----
     The next term, relative to it, is 2.10 lambda**(-2/3).
-
-    Source: [BP] Eq. (film_thickness_small_deformation).
     """
     return np.power(groups.speed, 2 / 3) / 24 ** (1 / 3)
 
 
-@formula(
-    predicts="flux_gap",
-    uses=("speed",),
-    plane="smooth",
-    limits=FAST_RANGE,
-    worst=0.002,
-    small="1/speed",
-    error_order=2 / 3,
-    approach=_at_inverse_speed,
-    steps=(1e-5, 1e-4, 1e-3),
-    source="[BP] Eq. (fields_small_deformation)",
-)
+@_fast(predicts="flux_gap", worst=0.002, source="[BP] Eq. (fields_small_deformation)")
 def flux_gap_small(groups: Groups) -> Value:
     r"""Return the flux gap at small deformation, speed group -> infinity.
 
@@ -75,21 +64,14 @@ def flux_gap_small(groups: Groups) -> Value:
     Notes
     -----
     The next term, relative to it, is 0.201 lambda**(-2/3).
-
-    Source: [BP] Eq. (fields_small_deformation).
     """
     return 4 / 3 * central_gap_small.function(groups)
 
 
-@formula(
+@_fast(
     predicts="gap",
-    uses=("speed",),
-    plane="smooth",
-    limits=FAST_RANGE,
     worst=0.017,
-    small="1/speed",
     error_order=1 / 3,
-    approach=_at_inverse_speed,
     steps=(1e-7, 1e-6, 1e-5),
     interval=_four_widths,
     source="[BP] Eq. (fields_small_deformation)",
@@ -103,24 +85,18 @@ def gap_small(groups: Groups, x: float | Array) -> Value:
     -----
     The next term is the deflection under the pressure of :func:`pressure_small`, of order lambda**(1/3); it is
     antisymmetric and so vanishes at x = 0.
-
-    Source: [BP] Eq. (fields_small_deformation).
     """
     return central_gap_small.function(groups) + np.square(x) / 2
 
 
-@formula(
+@_fast(
     predicts="fluid_pressure",
-    uses=("speed",),
-    plane="smooth",
     limits=(Limit("speed", 1e5),),
     worst=0.092,
-    small="1/speed",
     error_order=1 / 3,
-    approach=_at_inverse_speed,
     steps=(1e-7, 1e-6, 1e-5),
     interval=_four_widths,
-    source="[BP] Eq. (fields_small_deformation)",
+    source="[BP] Eq. (fields_small_deformation); 6 eta U a/(p_Hz u_Hz**2) is lambda",
 )
 def pressure_small(groups: Groups, x: float | Array) -> Value:
     r"""Return the fluid pressure at small deformation, speed group -> infinity.
@@ -130,24 +106,17 @@ def pressure_small(groups: Groups, x: float | Array) -> Value:
     Notes
     -----
     It is antisymmetric and carries no load; what carries it, of the order lambda**(-1/3), is the next term.
-
-    Source: [BP] Eq. (fields_small_deformation); 6 eta U a/(p_Hz u_Hz**2) is lambda.
     """
     gap = gap_small.function(groups, x)
     return -groups.speed / 3 / gap * (x / gap)
 
 
-@formula(
+@_fast(
     predicts="viscous_friction",
     uses=("speed", "load"),
-    plane="smooth",
     limits=(Limit("speed", 1e2),),
     worst=0.00095,
-    small="1/speed",
-    error_order=2 / 3,
-    approach=_at_inverse_speed,
-    steps=(1e-5, 1e-4, 1e-3),
-    source="[BP] Eq. (hydrofriction_small)",
+    source="[BP] Eqs. (hydrofriction_small), (film_thickness_small_deformation); scale as in :func:`friction_large`",
 )
 def friction_small(groups: Groups, beta: float = 1.0) -> Value:
     r"""Return the viscous friction at small deformation, speed group -> infinity.
@@ -157,8 +126,5 @@ def friction_small(groups: Groups, beta: float = 1.0) -> Value:
     Notes
     -----
     The next term, relative to it, is 0.0195 lambda**(-2/3).
-
-    Source: [BP] Eq. (hydrofriction_small) with Eq. (film_thickness_small_deformation); for the printed scale see
-    :func:`friction_large`.
     """
     return 4 * math.sqrt(2) / 3 * 24 ** (1 / 6) * beta * groups.load**0.5 * np.power(groups.speed, 2 / 3)

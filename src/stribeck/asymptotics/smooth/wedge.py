@@ -109,9 +109,9 @@ def wedge(load: float, fluid_number: float) -> Wedge:
 
 
 @formula(
-    predicts="contact_load_share",
     plane="mixed",
     limits=(Limit("load", 1e-6, 0.9), Limit("relative_roughness", 0.0, 1e-3), Limit("fluid_number", 0.0, 10.0)),
+    undefined="from load 1 and fluid number 1e3 on",
     worst=0.03,
     small="relative_roughness",
     error_order=2 / 3,
@@ -123,15 +123,6 @@ def contact_load_share(groups: Groups) -> Value:
     r"""Return the load share of the asperities in the limit of zero relative roughness at this fluid number.
 
     .. math:: S = \frac2\pi \int_{-1}^1 F^{-1/2} e^{-H} dx
-
-    Returns
-    -------
-    float or ndarray
-        S [-]; nan from load 1 on, and from fluid number 1e3 on.
-
-    Notes
-    -----
-    Source: this module.
     """
     lambda_, F, _ = np.broadcast_arrays(groups.speed, groups.load, groups.relative_roughness)
     number = np.where(lambda_ > 0, np.broadcast_to(fluid_number(groups), groups.shape), 0.0)
