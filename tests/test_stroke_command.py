@@ -86,12 +86,22 @@ def test_a_table_that_is_wrong_is_refused_in_a_sentence(capsys, write, table, sa
     assert answer.code == 2 and said in answer.err and answer.out == ""
 
 
-def test_friction_of_asperities_that_is_a_shear_stress_is_refused(capsys, write):
-    stress = {"model": '"shear-stress"', "shear_stress": '"0.2 MPa"'}
+def test_a_table_of_shear_stresses_goes_on_below_its_first_speed_and_not_above_its_last(capsys, write):
+    stress = {
+        "model": '"shear-stress-table"',
+        "sliding_speeds": '["2 mm/s", "3 mm/s"]',
+        "shear_stresses": '["0.2 MPa", "0.2 MPa"]',
+    }
     rough = {"h_rms": '"1 um"', "hurst": "0.8", "longest_wavelength": '"150 um"', "shortest_wavelength": '"1.5 um"'}
-    by_surface = dict.fromkeys(("boundary_friction", "roughness", "alpha", "beta")) | {"law": '"persson"'}
-    answer = call(capsys, "stroke", write(RAMP, by_surface, surface=rough, asperity_friction=stress))
-    assert answer.code == 2 and "strokes take the friction of asperities as a coefficient alone" in answer.err
+    by_surface = dict.fromkeys(("boundary_friction", "roughness", "alpha", "beta"))
+    by_surface |= {"law": '"persson"', "speed": '"3 mm/s"'}
+    answer = call(capsys, "stroke", write(RAMP, by_surface, surface=rough, asperity_friction=stress), "--json")
+    found = json.loads(answer.out)
+    assert any("Slower than 2 mm/s" in each for each in found["notes"])
+    assert found["friction_asperities"][0] > found["friction_asperities"][-1] > 0
+    faster = RAMP | {"end": '"4 mm/s"'}
+    answer = call(capsys, "stroke", write(faster, by_surface, surface=rough, asperity_friction=stress))
+    assert answer.code == 2 and "outside the table of shear stresses" in answer.err
 
 
 def test_a_film_that_ends_does_so_unless_it_is_asked_to_be_full(capsys, write):

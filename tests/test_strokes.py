@@ -118,6 +118,23 @@ def test_a_motion_that_stays_at_one_speed_stays_in_its_steady_state(change):
     assert found.work == pytest.approx(state.friction.total * LOAD * SPEED * 0.1, rel=2e-5)
 
 
+def test_asperities_that_rub_by_a_shear_stress_do_so_over_their_area_at_each_instant():
+    """At one speed as in steady sliding; and with it the friction is a factor on that of a stress of one size."""
+    seal = sb.load_case("examples/rod_seal.toml").contact
+    one, fast = (seal.replace(shear_stress="0.2 MPa", speed_exponent=n, reference_speed=seal.speed) for n in (0.0, 0.5))
+    slow = 0.2 * seal.speed
+    found = sb.stroke(fast, sb.motions.Table([0, 1e-3], [slow, slow]), steps=16)
+    assert np.allclose(found.friction, sb.solve(fast.replace(speed=slow)).friction.total, rtol=5e-5)
+    motion = sb.motions.Sine(stroke=10 * seal.hertz.half_width, frequency=1.0)
+    found, plain = (sb.stroke(each, motion, cycles=1, steps=16) for each in (fast, one))
+    factor = (np.abs(found.speed) / seal.speed) ** 0.5
+    assert np.allclose(found.friction_asperities, factor * plain.friction_asperities, rtol=1e-9)
+    # Of all the load on a small area it would be the stress over the pressure there; the area falls behind the load.
+    most = one.asperity_friction.coefficient_at_small_area(one) * plain.contact_load_share
+    part = np.abs(plain.friction_asperities)[plain.speed != 0] / most[plain.speed != 0]
+    assert 0.95 < part.min() and part.max() < 0.999
+
+
 @pytest.mark.parametrize(
     ("cavitation", "wanted"),
     [("none", [0.00731, 0.03443, 0.0611, 0.00574]), ("exit", [0.00704, 0.03429, 0.0598, 0.00530])],

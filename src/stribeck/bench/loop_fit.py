@@ -12,12 +12,13 @@ import numpy as np
 from stribeck._types import Array, Flags
 from stribeck.bench.loop import Loop, read_loop
 from stribeck.cases.case import Case
-from stribeck.cases.fit_settings import DEFAULT_FREE, FitSettings, free_names
+from stribeck.cases.fit_settings import FitSettings
 from stribeck.cases.reading import load_case
 from stribeck.contacts.geometries import LineContact
 from stribeck.files.datasets import Column
 from stribeck.files.results import Exported, Labelled
 from stribeck.files.writing import PathLike
+from stribeck.fits.fit import names_to_fit
 from stribeck.fits.free_inputs import FreeInput, free_inputs
 from stribeck.fits.least_squares import Minimum, settle
 from stribeck.fits.measurements import Measurements
@@ -38,7 +39,6 @@ SLOW = 0.1  # Speed over the largest below which a row is left out: at a reversa
 SAME_LENGTH = 0.05  # Part by which the measured path may be longer or shorter than the motion
 STEP = 0.01  # Change of the logarithm of an input for its derivative; with less, the mesh of a stroke makes noise of it
 STEPS = 120  # Steps of a cycle, unless the case says otherwise
-BOUNDARY = ("boundary_friction",)
 LEVELS = (0.682689492137086, 0.95)  # Probabilities of the two intervals
 
 
@@ -175,7 +175,7 @@ def fit_loop(
     motion : Motion, optional
         The motion, in the place of that of the case; it must repeat.
     free : sequence of str, optional
-        Inputs to fit; those of the case, else boundary friction and roughness.
+        Inputs to fit; those of the case, else boundary friction, or the shear stress in its place, and roughness.
     steps : int, optional
         Steps of a cycle; those of the case, else 120.
     on_step : callable, optional
@@ -209,9 +209,7 @@ def fit_loop(
     """
     loop = data if isinstance(data, Loop) else read_loop(data)
     contact, settings, motion, steps = _problem(case, motion, steps)
-    names = free_names(free) if free is not None else settings.free or DEFAULT_FREE
-    if not names:
-        raise InputError("free is empty; name at least one input to fit, such as boundary_friction.")
+    names = names_to_fit(free, settings, contact)
     of_free = Measurements("speed", np.ones(1), np.ones(1), None, np.zeros(1, int), ("",), ({},), np.ones(1, int))
     model = _LoopModel(contact, motion, steps, free_inputs(contact, of_free, names, settings), loop, on_step)
     if len(model.data) <= 3 * len(model.free):
@@ -253,6 +251,7 @@ class _LoopModel:
         on_step: Callable[[int], object] | None,
     ) -> None:
         self.contact, self.motion, self.steps, self.free, self.on_step = contact, motion, steps, free, on_step
+        self.rubs = np.array([each.name == contact.friction_of_asperities.size for each in free])
         self.strokes = 0
         self._known: dict[bytes, tuple[Array, Array, Array, Array]] = {}
         self.phase, sliding = self._phases(loop)
@@ -294,9 +293,9 @@ class _LoopModel:
         return found
 
     def _parts(self, theta: Array) -> tuple[Array, Array, Array, Array]:
-        """Return friction by asperities and by the fluid at the rows, for the boundary friction of the case, and errors."""
-        # Friction by asperities goes with boundary friction, and nothing else of the stroke does.
-        others = np.where([each.names == BOUNDARY for each in self.free], 0.0, theta)
+        """Return friction by asperities and by the fluid at the rows, for the friction of asperities of the case, and errors."""
+        # Friction by asperities goes with its size, and nothing else of the stroke does.
+        others = np.where(self.rubs, 0.0, theta)
         key = others.tobytes()
         if key not in self._known:
             self._known[key] = self.at_rows(self.at(others))
@@ -313,11 +312,11 @@ class _LoopModel:
 
     def predict(self, theta: Array, states: object, at: object = None) -> Prediction:
         """Return the friction of the rows, with its derivatives."""
-        rubbing = math.exp(sum(t for free, t in zip(self.free, theta.tolist(), strict=True) if free.names == BOUNDARY))
+        rubbing = math.exp(float(theta @ self.rubs))
         asperities, fluid, *errors = self._parts(theta)
         columns = []
-        for k, free in enumerate(self.free):
-            if free.names == BOUNDARY:
+        for k, rubs in enumerate(self.rubs):
+            if rubs:
                 columns.append(rubbing * asperities)
                 continue
             beside = self._parts(theta + STEP * np.eye(len(theta))[k])

@@ -17,7 +17,7 @@ from stribeck.numerics.panels import Mesh
 from stribeck.numerics.settings import HALF_DIGITS
 from stribeck.quantities.outputs import GROUPS
 
-__all__ = ["area_derivatives", "area_of_state", "real_area"]
+__all__ = ["area_by_pressure", "area_derivatives", "area_of_state", "real_area"]
 
 LOG_STEP = HALF_DIGITS**0.5  # Step of a logarithm in central differences, whose error is its square
 
@@ -26,10 +26,10 @@ def real_area(groups: Groups, mesh: Mesh, stretch: float, contact: Array, load_e
     """Return the real area by a contact pressure at the nodes and its absolute error, by that of the load on asperities."""
     law: Any = groups.law
     scale = float(groups.pressure_scale)
-    value = _integral(groups, mesh, stretch, contact)
+    value = area_by_pressure(groups, mesh, stretch, contact)
     # The logarithm of the pressure is smooth; where it is too small for one it carries nothing.
     fine, logs = mesh.refined(2 * mesh.order), np.log(np.maximum(contact, np.finfo(float).tiny))
-    missed = abs(_integral(groups, fine, stretch, np.exp(mesh.to_order(logs, fine.order))) - value)
+    missed = abs(area_by_pressure(groups, fine, stretch, np.exp(mesh.to_order(logs, fine.order))) - value)
     # No area grows faster with the load than at small pressure.
     return value, missed + 0.5 * LOAD * area_slope(law) * scale * load_error
 
@@ -68,9 +68,10 @@ def _moved_area(state: State, move: Array, group: str | None, step: float) -> fl
     u = equations.fields(y)
     contact = replace(equations, law=contact_law(groups)).contact(u.gap)
     stretch = 1.0 if u.cavity_stretch is None else float(u.cavity_stretch[0])
-    return _integral(groups, state.mesh, stretch, contact)
+    return area_by_pressure(groups, state.mesh, stretch, contact)
 
 
-def _integral(groups: Groups, mesh: Mesh, stretch: float, contact: Array) -> float:
+def area_by_pressure(groups: Groups, mesh: Mesh, stretch: float, contact: Array) -> float:
+    """Return the real area by a contact pressure at the nodes."""
     law: Any = groups.law
     return 0.5 * stretch * float(mesh.weights @ law.area_fraction_at(contact * float(groups.pressure_scale)))

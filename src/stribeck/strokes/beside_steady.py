@@ -41,17 +41,21 @@ def beside_steady(stroke: Stroke, on_point: Callable[[int, int], None] | None = 
     )
     top = int(np.argmax(speed))
     largest = float(speed[top])
+    contact, asperities = stroke.contact, stroke.contact.friction_of_asperities
+    known = asperities.known_speeds
+    slowest = max(SLOWEST * largest, known[0])
     curve = stribeck_curve(
-        stroke.contact,
-        speed=(0.99 * SLOWEST * largest, 1.01 * largest),
+        contact,
+        speed=(max(0.99 * slowest, known[0]), min(1.01 * largest, known[1])),
         points=2,
         rtol=NEGLIGIBLE * COARSE_RTOL,
         on_point=on_point,
     )
-    steady = curve.at(np.clip(speed, SLOWEST * largest, largest)).friction
+    steady = curve.at(np.clip(speed, slowest, largest)).friction
     total, error = np.asarray(steady), np.asarray(steady.error)
     # Slower than the curve, friction is between that of its slow end and that of asperities with all of the load.
-    slow = np.where((speed > 0) & (speed < SLOWEST * largest), stroke.contact.boundary_friction, 0.0)
+    dry = asperities.coefficient_at_small_area(contact.replace(speed=slowest))
+    slow = np.where((speed > 0) & (speed < slowest), dry, 0.0)
     mean, mean_error = _mean(time, speed, friction, doubt)
     steady_mean, steady_error = _mean(time, speed, total, error + slow)
     return BesideSteady(

@@ -15,11 +15,13 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
+from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.drag import friction_scale
 from stribeck.equations.film import is_thinning
 from stribeck.equations.gap import central_gap, minimum_gaps
 from stribeck.equations.line import LOAD
 from stribeck.equations.operators import Operators
+from stribeck.equations.real_area import area_by_pressure
 from stribeck.equations.state import State, unknowns_of
 from stribeck.equations.unsteady import Unsteady, swallowed
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
@@ -60,10 +62,14 @@ class March:
     """Steps on one mesh; time in 2a/U_0, speeds over U_0, and all else in Hertz units."""
 
     operators: Operators
-    law: ContactLaw
-    speed: float  # Speed group of U_0
-    load: float  # Load group
+    groups: Groups  # At the speed U_0
     ends: bool  # Whether the film ends where its pressure would fall below the ambient one
+    by_area: bool  # Whether asperities rub by their real area, not by their load
+
+    @cached_property
+    def law(self) -> ContactLaw:
+        """The contact law."""
+        return contact_law(self.groups)
 
     @cached_property
     def volume(self) -> Matrix:
@@ -82,7 +88,7 @@ class March:
 
     def equations(self, share: float, scale: float = 1.0, rate: float = 0.0, before: Array | float = 0.0) -> Unsteady:
         """Return the equations at an instant; the rows of the gradient have the factor ``scale``."""
-        return Unsteady(self.operators, self.speed, self.law, scale, share, rate, before, self.volume, self.ends)
+        return Unsteady(self.operators, float(self.groups.speed), self.law, scale, share, rate, before, self.volume, self.ends)
 
     def _start(self, guess: State, time: float, share: float) -> Past:
         """Return the steady state at a share of the speed, by Newton's iteration from a state on another mesh."""
@@ -132,7 +138,7 @@ class March:
         return Past(time, root.x, equations, root.inverse, step, past.y, held) if self._arrived(root) else None
 
     def numbers(self, past: Past) -> Array:
-        """Return the share of asperities, the viscous friction for beta = 1, central and minimum gap."""
+        """Return the share of asperities, that by which they rub, the viscous friction for beta = 1, central and minimum gap."""
         equations, mesh = past.equations, self.operators.mesh
         u = equations.fields(past.y)
         g = equations.gradient(equations.film, u)
@@ -145,7 +151,9 @@ class March:
             ):
                 passed = share * mesh.interpolate(u.gap, np.array([edge]))
                 sheared = np.where(outside, equations.film.cavity_traction(u.gap, u.pressure, passed), sheared)
-        asperities = mesh.weights @ equations.contact(u.gap) / LOAD
-        viscous = friction_scale(self.load, self.speed) * (mesh.weights @ sheared)
+        contact = equations.contact(u.gap)
+        asperities = mesh.weights @ contact / LOAD
+        rubbing = area_by_pressure(self.groups, mesh, 1.0, contact) if self.by_area else asperities
+        viscous = friction_scale(self.groups.load, self.groups.speed) * (mesh.weights @ sheared)
         lowest = minimum_gaps(mesh, np.log(u.gap[None, : -mesh.order]))[1][0]
-        return np.array([asperities, viscous, central_gap(mesh, u.gap), lowest])
+        return np.array([asperities, rubbing, viscous, central_gap(mesh, u.gap), lowest])

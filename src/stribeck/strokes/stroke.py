@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asperity_friction.coulomb import needs_area
 from stribeck.contacts.geometries import LineContact
-from stribeck.contacts.groups import Groups, contact_law
+from stribeck.contacts.groups import Groups
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.operators import Operators
 from stribeck.equations.state import State
@@ -18,6 +19,7 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.motions.motion import Motion, checked_motion
 from stribeck.numerics.settings import COARSE_ORDER, COARSE_RTOL, LEAST_DEGREE, NEGLIGIBLE, SAFETY
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, checked_callback, show
 from stribeck.solids.solid import lengths_of
@@ -138,7 +140,7 @@ def stroke(
     done = 0
     for order, instants in ((COARSE_ORDER, time), (LEAST_DEGREE + 1, time[::2])):
         operators = Operators(shared_mesh(states, order), model)
-        march = March(operators, contact_law(groups), float(groups.speed), float(groups.load), ends)
+        march = March(operators, groups, ends, needs_area(contact.friction_of_asperities))
         before = done
 
         def note(k: int, before: int = before) -> None:
@@ -163,11 +165,6 @@ def _checked_contact(contact: Any) -> LineContact:
     if not isinstance(contact, LineContact):
         raise InputError(
             f"contact = {show(contact)}; strokes are solved of a LineContact: not of balls, nor of groups, which know no time."
-        )
-    if contact.asperity_friction is not None:
-        raise InputError(
-            f"asperity_friction = {show(contact.asperity_friction)}: strokes take the friction of asperities as a coefficient "
-            "alone; give boundary_friction."
         )
     return contact
 
@@ -219,7 +216,7 @@ def _result(
     """Return two marches as a result in SI units: the first one, and its difference from the second."""
     scales = contact.hertz
     fine, coarse = (
-        _columns(rows, v, contact.boundary_friction, contact.beta, scales.indentation)
+        _columns(rows, v, _rubbing(contact, v), contact.beta, scales.indentation)
         for rows, v in zip(marches, (speed, speed[::2]), strict=True)
     )
     errors = {name: _error(fine[name], coarse[name]) for name in fine}
@@ -240,25 +237,36 @@ def _result(
         errors=errors,
         work=work,
         work_error=SAFETY * abs(work - coarse_work),
-        notes=(_notes(contact),),
+        notes=_notes(contact),
     )
 
 
-def _notes(contact: LineContact) -> str:
-    """Return how the film ends and is fed."""
+def _notes(contact: LineContact) -> tuple[str, ...]:
+    """Return how the film ends and is fed, and how asperities rub where it is not known."""
     ends = contact.groups.model.cavitation is Cavitation.EXIT
     end = (
         "The film ends where its pressure would fall below the ambient one"
         if ends
         else "The film is full: it holds any suction"
     )
-    return f"{end}; its inlet is flooded, not starved by its own wake after a reversal."
+    notes = [f"{end}; its inlet is flooded, not starved by its own wake after a reversal."]
+    slowest = contact.friction_of_asperities.known_speeds[0]
+    if slowest > 0:
+        notes.append(f"Slower than {format_si(slowest, 'speed')} the shear stress is that of this speed, the first of its table.")
+    return tuple(notes)
 
 
-def _columns(rows: Array, speed: Array, boundary: float, beta: float, indentation: float) -> dict[str, Array]:
+def _rubbing(contact: LineContact, speed: Array) -> Array:
+    """Return the factor on load or area of the asperities at each speed."""
+    friction, sliding = contact.friction_of_asperities, np.abs(speed)
+    # Where the body rests the factor does not count; it may be infinite there.
+    return friction.factors(contact, np.maximum(sliding, max(sliding[sliding > 0].min(), friction.known_speeds[0])))
+
+
+def _columns(rows: Array, speed: Array, rubbing: Array, beta: float, indentation: float) -> dict[str, Array]:
     """Return the numbers of a march by name, in SI units."""
-    share, viscous, central, minimum = rows.T
-    asperities, fluid = boundary * np.sign(speed) * share, beta * viscous
+    share, amount, viscous, central, minimum = rows.T
+    asperities, fluid = rubbing * np.sign(speed) * amount, beta * viscous
     return {
         "friction": asperities + fluid,
         "friction_asperities": asperities,
