@@ -138,7 +138,7 @@ class March:
         return Past(time, root.x, equations, root.inverse, step, past.y, held) if self._arrived(root) else None
 
     def numbers(self, past: Past) -> Array:
-        """Return the share of asperities, that by which they rub, the viscous friction for beta = 1, central and minimum gap."""
+        """Return the share of asperities, by what they rub, viscous friction for beta = 1, central and minimum gap."""
         equations, mesh = past.equations, self.operators.mesh
         u = equations.fields(past.y)
         g = equations.gradient(equations.film, u)

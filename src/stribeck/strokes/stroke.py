@@ -252,7 +252,7 @@ def _notes(contact: LineContact) -> tuple[str, ...]:
     notes = [f"{end}; its inlet is flooded, not starved by its own wake after a reversal."]
     slowest = contact.friction_of_asperities.known_speeds[0]
     if slowest > 0:
-        notes.append(f"Slower than {format_si(slowest, 'speed')} the shear stress is that of this speed, the first of its table.")
+        notes.append(f"Slower than {format_si(slowest, 'speed')} the shear stress is the first one of its table.")
     return tuple(notes)
 
 
