@@ -293,7 +293,7 @@ class _LoopModel:
         return found
 
     def _parts(self, theta: Array) -> tuple[Array, Array, Array, Array]:
-        """Return friction by asperities and by the fluid at the rows, for the friction of asperities of the case, and errors."""
+        """Return friction by asperities and by the fluid at the rows, as asperities of the case rub, and errors."""
         # Friction by asperities goes with its size, and nothing else of the stroke does.
         others = np.where(self.rubs, 0.0, theta)
         key = others.tobytes()
