@@ -80,6 +80,17 @@ def test_python_takes_a_data_sheet_too():
 
 
 @pytest.mark.quick
+def test_a_motion_to_and_fro_counts_with_its_mean_speed_and_its_stroke_is_checked(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(case_text({"speed": None, "stroke": '"50 mm"', "frequency": '"2 Hz"'}))
+    case = sb.load_case(path)
+    assert case.contact.speed == pytest.approx(2 * 0.05 * 2)  # twice the stroke in half a second
+    assert case.facts == {"stroke": 0.05}
+    path.write_text(case_text({"speed": None, "stroke": '"50 mm"', "frequency": '"2 Hz"'}, check={"stroke": '"20 mm"'}))
+    assert sb.load_case(path).facts == {"stroke": 0.02}  # what is said wins
+
+
+@pytest.mark.quick
 def test_what_cannot_be_converted_is_named_alone(subtests, tmp_path_factory):
     for changes, sentence in [
         ({"width": None}, "width is missing beside force = '15.4 N'; add a length, for example width = "),

@@ -581,6 +581,7 @@ TYPED = [
     ("viscosity", "46 cSt", {"kinematic_viscosity": "46 cSt", "density": "870 kg/m^3"}),
     ("viscosity", "46 cSt, 1000 kg/m^3", {"kinematic_viscosity": "46 cSt", "density": "1000 kg/m^3"}),
     ("speed", "1500 rpm, 30 mm", {"rotational_speed": "1500 rpm", "shaft_diameter": "30 mm"}),
+    ("speed", "stroke 50 mm, 2 Hz", {"stroke": "50 mm", "frequency": "2 Hz"}),
     ("speed", "mean 0.5 m/s", {"entrainment_speed": "0.5 m/s"}),
     ("load", "50 N, 20 mm", {"force": "50 N", "width": "20 mm"}),
     ("load", "20 N/m, sealed pressure 10 kPa", {"load": "20 N/m", "sealed_pressure": "10 kPa"}),
@@ -623,7 +624,10 @@ def test_a_liquid_is_typed_by_its_grade_and_temperature(subtests):
 def test_words_that_mean_nothing_or_half_of_it_are_refused_with_what_to_type(subtests):
     refused = {
         ("speed", "1500 rpm"): 'shaft_diameter = "30 mm", or give speed alone. Type both, with a comma between them.',
-        ("speed", "25 Hz, 30 mm"): "speed = '25 Hz, 30 mm'",
+        (
+            "speed",
+            "25 Hz, 30 mm",
+        ): "speed = '25 Hz, 30 mm' mixes two ways to give it; type one of 1500 rpm, 30 mm; stroke 50 mm, 2",
         ("modulus", "170 Shore A"): "shore_a = 170 must be between 20 and 90",
         ("modulus", "soft"): "modulus = 'soft' does not begin with a number",
         ("viscosity", "ISO VG 46 at 600 C"): "temperature = 600 degC must lie between",

@@ -116,7 +116,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
             slide_to_roll=FitSettings.of(contact).slide_to_roll,
             scales_surface="surface" in tables and not tables["surface"].get("shape_only", False),
         ),
-        facts={**preset_facts(tables), **facts},
+        facts={**preset_facts(tables), **{name: found.given[name] for name in FACTS.keys() & found.given.keys()}, **facts},
         errors=known | typical,
         conversions=(
             *found.sentences,

@@ -179,6 +179,24 @@ FORMS = (
         source="definition",
     ),
     Form(
+        of="speed",
+        inputs=(
+            Input(
+                name="stroke",
+                label="length of the stroke, from stop to stop",
+                symbol="$S$",
+                dimension="length",
+                typical="50 mm",
+                source="a motion to and fro",
+                letters=("stroke",),
+            ),
+            Input(name="frequency", label="frequency of the stroke", symbol="$f$", dimension="rate", typical="2 Hz"),
+        ),
+        value=lambda stroke, frequency: 2 * stroke * frequency,
+        formula="U = 2 S f, the mean over a cycle; the highest speed of a sine is pi/2 times that",
+        source="definition",
+    ),
+    Form(
         of="load",
         geometry="line",
         inputs=(_FORCE, _WIDTH),

@@ -102,7 +102,8 @@ class InputTable:
 class ReadInputs:
     """Inputs as they are read: by name in SI units, with what is known and what is wrong."""
 
-    values: dict[str, float] = field(default_factory=dict)
+    given: dict[str, float] = field(default_factory=dict)  # Under the names under which they were given
+    values: dict[str, float] = field(default_factory=dict)  # Under those that a contact keeps
     errors: dict[str, float] = field(default_factory=dict)  # Standard errors over the values, where known
     sentences: list[str] = field(default_factory=list)  # One for each form whose formula is said
     problems: list[str] = field(default_factory=list)
@@ -135,6 +136,7 @@ def read_inputs(
         except InputError as problem:
             found.problems.append(str(problem))
             found.values[name] = row.typical_value  # stands for it, so that nothing else is said of it
+    found.given = dict(found.values)
     apply_forms(found, given, table)
     note_missing(found, table, elsewhere)
     return found

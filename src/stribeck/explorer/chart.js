@@ -66,9 +66,11 @@ const StribeckChart = (() => {
     const every = Math.max(1, Math.ceil(((last - first) * 34) / room));
     const powers = Array.from({ length: last - first + 1 }, (_, i) => first + i);
     let major = powers.filter((power) => power % every === 0).map((power) => 10 ** power);
-    if (major.filter(inside).length < 3) major = powers.flatMap((power) => [1, 2, 5].map((part) => part * 10 ** power));
+    const isShort = major.filter(inside).length < 3;
+    if (isShort) major = powers.flatMap((power) => [1, 2, 5].map((part) => part * 10 ** power));
     const minor = every > 1 ? [] : powers.flatMap((power) => [2, 3, 4, 5, 6, 7, 8, 9].map((part) => part * 10 ** power));
-    return { major: major.filter(inside).map((value) => [value, powerOf(value)]), minor: minor.filter(inside) };
+    const words = isShort && low >= 1e-2 && high <= 1e3 ? inWords : powerOf;
+    return { major: major.filter(inside).map((value) => [value, words(value)]), minor: minor.filter(inside) };
   }
 
   // From values of an axis to pixels, and from a part of the axis to its value.

@@ -171,6 +171,7 @@ export default {
       </section>
       <section class="card controls" aria-label="Inputs">
         <h2>Contact</h2>
+        <p class="caption">Type numbers as data sheets have them: 70 Shore A, Ra 0.4 um, 46 cSt, 1500 rpm, 30 mm. A ? says what there is.</p>
         <list v-for="each in lists.slice(0, 1)" :key="each.name" :now="each" @act="forward"></list>
         <knob v-for="each in rows.slice(0, 6)" :key="each.name" :now="each" :busy="isBusy" @act="forward"></knob>
         <fold name="more" title="More inputs" :wrong="isWrong(rows.slice(6))">

@@ -83,7 +83,7 @@ def _of_kind(name: str) -> Choice:
     shapes = [key for _, law in laws if not hasattr(law, "base") for key in numbers_of(law)]
     options = {}
     for each, law in laws:
-        words = "Newtonian" if each == "newtonian" else each if law is None else each.replace("-", " ")
+        words = each.capitalize() if each in ("newtonian", "coulomb") else each if law is None else each.replace("-", " ")
         keys = (*numbers_of(law), *(shapes if hasattr(law, "base") else ()))
         needed = needed_of(law)
         others = tuple(own.name for own in fields(law) if own.name not in keys) if is_dataclass(law) else ()
@@ -205,13 +205,29 @@ def list_of(now: Inputs, name: str) -> dict[str, Any]:
     return shown | {"help": help_of_choice(name, keys)} | ({"hidden": True} if len(known) < 2 else {})
 
 
+# What each list is about.
+ROLES = {
+    "geometry": "The harder body, on a flat soft one or the other way round.",
+    "law": "How hard asperities press at a given gap: the exponential law for soft contacts, Persson's under any load.",
+    "preset": "A liquid: it sets the viscosity, and how that changes.",
+    "fluid": "How the fluid thins as it is sheared.",
+    "viscosity_law": "How the viscosity rises with the pressure, which oils do above some 10 MPa.",
+    "density": "How the fluid is compressed.",
+    "cavitation": "What becomes of the film where its pressure would fall below that of the surroundings.",
+    "motion": "Whether the second surface moves too, as in rolling.",
+    "flow_factors": "How summits hinder the flow, beside the mean gap.",
+    "solid": "Whether the soft body is thick, a layer on a hard one, or slow to recover.",
+    "shape": "The undeformed shape of the body.",
+    "asperity_friction": "Friction where asperities touch: a coefficient, or a shear stress on the real area of contact.",
+}
+
+
 @functools.cache
 def help_of_choice(name: str, keys: tuple[str, ...]) -> str:
-    """Return what a list chooses, where a case file has that, and what the numbers of a choice are."""
+    """Return what a list is about, where a case file has that, and what the numbers of a choice are."""
     choice = CHOICES[name]
-    options = "; ".join(option.label for option in choice.options.values())
-    where = f" In a case file it is {f'{choice.key} of ' if choice.key else ''}[{choice.table}]." if choice.table else ""
-    return " ".join([f"{choice.label}: {options}.{where}", *(plain_words(NUMBERS[key]) for key in keys)])
+    where = f"In a case file it is {f'{choice.key} of ' if choice.key else ''}[{choice.table}]." if choice.table else ""
+    return " ".join(filter(None, [ROLES[name], where, *(plain_words(NUMBERS[key]) for key in keys)]))
 
 
 def choose(now: Inputs, name: str, value: str) -> Inputs:

@@ -338,13 +338,27 @@ def row_of(inputs: Inputs, name: str) -> dict[str, Any]:
     }
 
 
+# What inputs do whose names say little.
+ROLES = {
+    "alpha": "At a gap h asperities press with beta E* exp(-alpha h/h_rms): alpha says how fast they lose touch as it opens.",
+    "beta": "At a gap h asperities press with beta E* exp(-alpha h/h_rms): beta says how hard, the least certain input.",
+    "boundary_friction": "The friction where asperities carry the whole load.",
+    "roughness": "The rms height Rq of both surfaces together.",
+    "speed_group": "The thicker the film beside the Hertz indentation, the larger.",
+    "load_group": "Above 1 the Hertz pressure exceeds beta E*, the pressure of asperities at zero gap.",
+    "roughness_group": "At a given load group, the rougher the surfaces beside the Hertz indentation, the larger.",
+}
+
+
 @functools.cache
 def help_of(name: str, geometry: str) -> str:
-    """Return what an input is, and how else it may be typed, in the words of its row."""
+    """Return what an input is, what it does, and how else it may be typed."""
     row, table = GROUP_FIELDS.get(name) or FIELDS[geometry][name], INPUT_TABLES[geometry]
+    role = next(
+        (f"It is {form.meaning.removeprefix('which is ')}." for form in table.forms if form.meaning and form.of == name), ""
+    )
     also = "" if name in GROUP_FIELDS else "; ".join(examples(table, name))
-    words = plain_words(row)
-    return f"{words} It may also be typed as {also}." if also else words
+    return " ".join(filter(None, (plain_words(row), role or ROLES.get(name), also and f"It may also be typed as {also}.")))
 
 
 def plain_words(row: Input) -> str:

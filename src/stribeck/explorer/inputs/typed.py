@@ -1,7 +1,7 @@
 """What people type: a number of a data sheet in its own words becomes the input that the package converts.
 
-The words are those of the rows: "70 Shore A", "Ra 0.4 um", "46 cSt", "1500 rpm, 30 mm", "mean 0.5 m/s". A liquid is named
-as in the table of presets, with its conditions: "ISO VG 46 at 60 degC".
+The words are those of the rows: "70 Shore A", "Ra 0.4 um", "46 cSt", "1500 rpm, 30 mm", "stroke 50 mm, 2 Hz". A liquid is
+named as in the table of presets, with its conditions: "ISO VG 46 at 60 degC".
 """
 
 from __future__ import annotations
@@ -39,11 +39,9 @@ def examples(table: InputTable, name: str) -> Iterator[str]:
     """Yield how an input may be typed in other words."""
     for form in forms_of(table, name):
         if not form.joins:
-            said = (
-                each.typical if each.dimension != "number" else f"{words_of(each)[-1]} {each.typical}" for each in form.inputs
-            )
+            said = [f"{each.letters[-1]} {each.typical}" if each.letters else each.typical for each in form.inputs]
             alone = [each for each in form.inputs if each.dimension in (table.quantities[name].dimension, "pressure")]
-            yield ", ".join([f"{words_of(alone[0])[-1]} {alone[0].typical}"] if alone else said)
+            yield ", ".join([f"{(alone[0].label, *alone[0].letters)[-1]} {alone[0].typical}"] if alone else said)
     if name == "viscosity":
         yield "ISO VG 46 at 60 °C"
 
@@ -61,6 +59,9 @@ def entries_of(table: InputTable, name: str, text: str) -> Entries | None:
         if named is None:
             return None  # which its own row then refuses
         found |= {named[0].name: _plain(*named)}
+    begun = [form for form in forms if not form.joins and not found.keys().isdisjoint(each.name for each in form.inputs)]
+    if len({form.of for form in begun}) < len(begun):
+        raise InputError(f"{name} = {show(text)} mixes two ways to give it; type one of {'; '.join(examples(table, name))}.")
     for form in forms:
         if not form.joins and form.names[0] in found:
             for each in form.inputs:
