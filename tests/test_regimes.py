@@ -6,36 +6,18 @@ import re
 
 import pytest
 from command_line import call, case_text
+from fit_data import TRUE as CONTACT
 
 import stribeck as sb
 from stribeck.regimes.margins import regime_margins
 
 REACH, LARGEST_SPEED_GROUP = 1e6, 1e6  # Of a search for other regimes
 
-CONTACT = sb.LineContact(
-    radius="10 mm",
-    modulus="2.7 MPa",
-    load="30 N/m",
-    viscosity="50 mPa*s",
-    speed="1 mm/s",
-    roughness="1 um",
-    alpha=2.0,
-    beta=0.06,
-    boundary_friction=0.7,
-)
 
-
-def test_a_regime_is_named_by_the_shares_of_load_and_friction(subtests):
-    for fluid, contact, regime in [
-        (0.0, 1.0, "boundary"),
-        (0.05, 0.99, "boundary"),
-        (0.051, 0.99, "mixed"),
-        (0.99, 0.11, "mixed"),
-        (0.99, 0.1, "hydrodynamic"),
-        (0.04, 0.1, "hydrodynamic"),
-    ]:
-        with subtests.test(fluid=fluid, contact=contact, regime=regime):
-            assert sb.regime_of(fluid, contact) == regime
+def test_a_regime_is_named_by_the_shares_of_load_and_friction():
+    shares = (0.0, 1.0), (0.05, 0.99), (0.051, 0.99), (0.99, 0.11), (0.99, 0.1), (0.04, 0.1)
+    named = ["boundary", "boundary", "mixed", "mixed", "hydrodynamic", "hydrodynamic"]
+    assert [sb.regime_of(fluid, contact) for fluid, contact in shares] == named
 
 
 def test_a_substrate_that_is_overtaken_has_regimes_too():
@@ -112,21 +94,16 @@ def test_a_crossing_is_the_nearest(mixed):
 
 
 def test_a_mixed_contact_has_two_neighbours(mixed):
-    assert mixed.regime == "mixed"
-    assert mixed.targets == ("boundary", "hydrodynamic")
+    assert (mixed.regime, mixed.targets) == ("mixed", ("boundary", "hydrodynamic"))
     speed, load, roughness, viscosity = mixed.margins
     assert [margin.name for margin in mixed.margins] == ["speed", "load", "roughness", "viscosity"]
     assert (speed.less.regime, speed.more.regime) == ("boundary", "hydrodynamic")
     assert (roughness.less.regime, roughness.more.regime) == ("hydrodynamic", "boundary")
     assert speed.crossing_into("boundary") is speed.less
-    assert load.crossing_into("boundary") is None
     assert viscosity.more.factor == speed.more.factor
     assert viscosity.less.value == pytest.approx(speed.less.factor * CONTACT.viscosity)
-
-
-def test_where_no_load_leads_on_the_range_searched_ends_at_load_group_one(mixed):
-    load = mixed.margins[1]
-    assert load.more is None
+    # Where no load leads on the range searched ends at load group one.
+    assert load.crossing_into("boundary") is load.more is None
     assert CONTACT.replace(load=load.searched[1]).groups.load == pytest.approx(1.0)
     assert load.searched[0] == pytest.approx(load.less.value)
 
@@ -153,29 +130,23 @@ def test_a_contact_on_the_threshold_is_said_to_stand_there(mixed):
     assert mixed.notes == ()
 
 
-def test_at_rest_only_speed_leads_on():
-    found = regime_margins(CONTACT.replace(speed=0))
-    speed, *others = found.margins
-    assert found.regime == "boundary"
-    assert (speed.less, speed.more.regime, speed.more.factor) == (None, "mixed", math.inf)
+def test_at_rest_and_between_smooth_surfaces_margins_begin_where_a_regime_does():
+    rest, smooth, both = (
+        regime_margins(CONTACT.replace(**changes))
+        for changes in ({"speed": 0}, {"roughness": 0}, {"speed": 0, "roughness": 0})
+    )
+    speed, *others = rest.margins
+    assert (rest.regime, speed.less, speed.more.regime, speed.more.factor) == ("boundary", None, "mixed", math.inf)
     assert shares(CONTACT.replace(speed=speed.more.value))[1] == pytest.approx(0.05, abs=1e-7)
     assert all(margin.less is margin.more is None for margin in others)
-    assert any("At zero speed" in note for note in found.notes)
-
-
-def test_smooth_surfaces_are_never_boundary_lubricated():
-    found = regime_margins(CONTACT.replace(roughness=0))
-    speed, load, roughness, _ = found.margins
-    assert found.regime == "hydrodynamic"
+    assert any("At zero speed" in note for note in rest.notes)
+    speed, load, roughness, _ = smooth.margins
+    assert smooth.regime == "hydrodynamic"
     assert speed.less is speed.more is load.less is load.more is None
     assert roughness.more.regime == "mixed"
     assert shares(CONTACT.replace(roughness=roughness.more.value))[2] == pytest.approx(0.1, abs=1e-7)
-    assert any("no boundary" in note for note in found.notes)
-
-
-def test_a_smooth_contact_at_rest_is_hydrodynamic_as_soon_as_it_moves():
-    speed = regime_margins(CONTACT.replace(speed=0, roughness=0)).margins[0]
-    assert (speed.more.regime, speed.more.value) == ("hydrodynamic", 0.0)
+    assert any("no boundary" in note for note in smooth.notes)
+    assert (both.margins[0].more.regime, both.margins[0].more.value) == ("hydrodynamic", 0.0)
     assert shares(CONTACT.replace(speed=1e-9, roughness=0))[0] == "hydrodynamic"
 
 
@@ -190,25 +161,20 @@ def test_a_saturated_contact_at_rest_leaves_boundary_lubrication_as_soon_as_it_m
 
 def test_without_dry_friction_nothing_leads_on():
     found = regime_margins(CONTACT.replace(boundary_friction=0))
-    assert found.regime == "hydrodynamic"
-    assert list(crossings(found)) == []
+    assert found.regime == "hydrodynamic" and list(crossings(found)) == []
     assert any("Without dry friction" in note for note in found.notes)
 
 
-def test_an_interruption_of_the_search_is_passed_on():
+def test_an_interruption_of_the_search_is_passed_on_and_bad_input_refused():
     def stop(done, scans):
         if done == 1:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         regime_margins(CONTACT, on_point=stop)
-
-
-def test_distances_refuse_bad_input(subtests):
     for contact, settings in [(CONTACT.groups, {}), (CONTACT, {"rtol": 1.0}), (CONTACT, {"definition": "mine"})]:
-        with subtests.test(contact=contact, settings=settings):
-            with pytest.raises(sb.InputError):
-                regime_margins(contact, **settings)
+        with pytest.raises(sb.InputError):
+            regime_margins(contact, **settings)
 
 
 # --- in words and as JSON ---
@@ -216,11 +182,9 @@ def test_distances_refuse_bad_input(subtests):
 
 def command(capsys, tmp_path, *options, **changes):
     """Return what ``stribeck regimes`` prints for the contact above with some inputs changed."""
-    contact = CONTACT.replace(**changes)
-    names = ("radius", "modulus", "load", "viscosity", "speed", "roughness", "alpha", "beta", "boundary_friction")
-    lines = "\n".join(f"{name} = {getattr(contact, name)!r}" for name in names)
-    (tmp_path / "case.toml").write_text(f"[contact]\n{lines}\n")
-    answer = call(capsys, "regimes", tmp_path / "case.toml", *options)
+    path = tmp_path / "case.toml"
+    path.write_text(case_text({name: repr(value) for name, value in CONTACT.replace(**changes).inputs()}))
+    answer = call(capsys, "regimes", path, *options)
     assert answer.code == 0
     return answer.out
 
@@ -243,53 +207,41 @@ def test_the_command_says_what_it_takes_to_reach_each_neighbour(capsys, tmp_path
     assert {"contact-law alpha", "contact-law beta"} <= rows
 
 
-def test_the_command_has_words_for_the_corners(subtests, capsys, tmp_path_factory):
+def test_the_command_has_words_for_the_corners(subtests, capsys, tmp_path):
+    only_speed = "speed from zero to 367.9 µm/s; not reachable by changing load, roughness, viscosity."
     for changes, sentence in [
-        (
-            {"speed": 0.0},
-            "To reach mixed lubrication: speed from zero to 367.9 µm/s; not reachable by changing load, roughness, viscosity.",
-        ),
+        ({"speed": 0.0}, f"To reach mixed lubrication: {only_speed}"),
         ({"speed": 0.0, "roughness": 0.0}, "To reach hydrodynamic lubrication: speed to any value above zero"),
     ]:
-        with subtests.test(changes=changes, sentence=sentence):
-            tmp_path = tmp_path_factory.mktemp("case")
+        with subtests.test(changes=changes):
             text = command(capsys, tmp_path, "-v", **changes)
             assert sentence in text
             assert ("Speed and viscosity" in text) == bool(re.search("viscosity [x/]", text))
 
 
-def moved_by(capsys, tmp_path, uncertain, error=0.01, **changes):
-    """Return by which power the speeds of other regimes move with an input, from their intervals, and the answer."""
-    contact = CONTACT.replace(speed="5 mm/s", **changes)
-    values = {name: repr(value) for name, value in contact.inputs()}
-    unit = {"roughness": " m", "speed": " m/s", "viscosity": " Pa*s"}.get(uncertain, "")
-    values[uncertain] = f'"{getattr(contact, uncertain)!r}{unit} +- {100 * error} %"'
+def moved_by(capsys, tmp_path, error=0.01):
+    """Return by which power the speeds of other regimes move with the roughness, from their intervals."""
     path = tmp_path / "case.toml"
-    path.write_text(case_text(values))
+    values = {name: repr(value) for name, value in CONTACT.replace(speed="5 mm/s").inputs()}
+    path.write_text(case_text(values | {"roughness": f'"{CONTACT.roughness!r} m +- {100 * error} %"'}))
     found = json.loads(call(capsys, "regimes", path, "--json").out)["margins"]
     width = 2 * 1.959964 * math.sqrt(math.log1p(error**2))
     marks = {(name, mark["regime"]): mark for name, each in found.items() for mark in (each["less"], each["more"]) if mark}
     return {key: math.log(mark["interval_95"][1] / mark["interval_95"][0]) / width for key, mark in marks.items()}
 
 
-def test_the_interval_of_a_margin_is_that_of_transitions_solved_again(subtests, capsys, tmp_path_factory):
-    for uncertain in ["roughness"]:
-        with subtests.test(uncertain=uncertain):
-            tmp_path = tmp_path_factory.mktemp("case")
-            found = moved_by(capsys, tmp_path, uncertain)
-            curves = [
-                sb.stribeck_curve(
-                    CONTACT.replace(**{uncertain: getattr(CONTACT, uncertain) * math.exp(step)}),
-                    speed=("0.1 mm/s", "0.1 m/s"),
-                    points=11,
-                    rtol=1e-5,
-                )
-                for step in (-0.02, 0.0, 0.02)
-            ]
-            for mark, regime in (("hydrodynamic_start", "hydrodynamic"), ("boundary_end", "boundary")):
-                low, _, high = (curve.landmark(mark).value for curve in curves)
-                expected = abs(math.log(high / low)) / 0.04
-                assert found["speed", regime] == pytest.approx(expected, rel=1e-2, abs=1e-3)
+def test_the_interval_of_a_margin_is_that_of_transitions_solved_again(capsys, tmp_path):
+    found = moved_by(capsys, tmp_path)
+    curves = [
+        sb.stribeck_curve(
+            CONTACT.replace(roughness=CONTACT.roughness * math.exp(step)), speed=("0.1 mm/s", "0.1 m/s"), points=11, rtol=1e-5
+        )
+        for step in (-0.02, 0.02)
+    ]
+    for mark, regime in (("hydrodynamic_start", "hydrodynamic"), ("boundary_end", "boundary")):
+        low, high = (curve.landmark(mark).value for curve in curves)
+        expected = abs(math.log(high / low)) / 0.04
+        assert found["speed", regime] == pytest.approx(expected, rel=1e-2, abs=1e-3)
 
 
 @pytest.mark.quick
@@ -324,12 +276,11 @@ def test_slow_speeds_at_which_the_fluid_keeps_its_share_are_not_searched():
 
 def test_margins_are_a_dataset(mixed):
     pytest.importorskip("xarray")
-    found = mixed
-    data = found.to_dataset()
-    marks = {(margin.name, mark.regime): mark for margin in found.margins for mark in (margin.less, margin.more) if mark}
-    rows = zip(data.input.values.tolist(), data.next_regime.values.tolist(), data.value.values.tolist(), strict=True)
-    assert {(name, regime): value for name, regime, value in rows} == {key: mark.value for key, mark in marks.items()}
-    assert {*zip(data.input.values.tolist(), data.unit.values.tolist(), strict=True)} <= {
-        ("speed", "m/s"), ("load", "N/m"), ("roughness", "m"), ("viscosity", "Pa s")
-    }  # fmt: skip
-    assert data.attrs["regime"] == found.regime
+    data = mixed.to_dataset()
+    rows = zip(*(data[name].values.tolist() for name in ("input", "next_regime", "value")), strict=True)
+    assert {(name, regime): value for name, regime, value in rows} == {
+        (name, mark.regime): mark.value for name, mark in crossings(mixed)
+    }
+    units = {*zip(data.input.values.tolist(), data.unit.values.tolist(), strict=True)}
+    assert units <= {("speed", "m/s"), ("load", "N/m"), ("roughness", "m"), ("viscosity", "Pa s")}
+    assert data.attrs["regime"] == mixed.regime
