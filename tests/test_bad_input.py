@@ -129,6 +129,7 @@ BAD_ARGUMENTS = [
     (["solve", "--groups", "1", "0.1", "nan"], "roughness = nan must be finite and zero or positive"),
     (["solve", "--groups", "1 m/s", "0.1", "1e-3"], "speed = '1 m/s' is not a number; write it as 0.001 or 1e-3"),
     (["solve", "--groups", "1", "1", "1", "--boundary-friction", "-1"], "boundary_friction = -1.0 must be zero or positive"),
+    (["solve", "case.toml", "--slide-to-roll", "fast"], "slide_to_roll"),
     (["new", "-o", "case.toml"], "Unknown option: -o. The file is given without an option, as in stribeck new case.toml."),
     (["solve", "--groups", "1", "1", "1", "--beta", "0"], "beta = 0.0 must be positive"),
     (["solve", "case.toml", "--rtol", "small"], "rtol = 'small' is not a number"),
