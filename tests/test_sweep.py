@@ -34,19 +34,21 @@ LONG = RANDOM.format(kind="sobol", points=1024)
 # --- the numbers ---
 
 
+def groups_at(table, i):
+    return sb.Groups(*(float(table[f"{name}_group"][i]) for name in ("speed", "load", "roughness")))
+
+
 def test_scattered_states_are_those_that_solve_gives_from_cold(tmp_path):
     file = write(tmp_path, RANDOM.format(kind="latin-hypercube", points=12))
     found = sb.sweep(file, tmp_path / "store").to_dataset()
     assert found.attrs["finished"] == 12
     for i in range(0, 12, 3):
-        state = sb.solve(sb.Groups(*(float(found[f"{name}_group"][i]) for name in ("speed", "load", "roughness"))))
-        for name in ("contact_load_share", "central_gap", "minimum_gap", "flux_gap"):
+        state = sb.solve(groups_at(found, i))
+        values = {name: getattr(state, name) for name in ("contact_load_share", "central_gap", "minimum_gap", "flux_gap")}
+        values |= {f"friction_{each}": state.friction(definition=each).total for each in ("published", "balanced")}
+        for name, value in values.items():
             error = float(found[f"{name}_error"][i]) + state.to_dict()[f"{name}_error"]
-            assert float(found[name][i]) == pytest.approx(getattr(state, name), abs=error)
-        for definition in ("published", "balanced"):
-            friction = state.friction(definition=definition)
-            error = float(found[f"friction_{definition}_error"][i]) + friction.error
-            assert float(found[f"friction_{definition}"][i]) == pytest.approx(friction.total, abs=error)
+            assert float(found[name][i]) == pytest.approx(value, abs=error), name
 
 
 def test_zero_speed_and_zero_roughness_are_ordinary_states(tmp_path):
@@ -54,7 +56,7 @@ def test_zero_speed_and_zero_roughness_are_ordinary_states(tmp_path):
     found = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset(grid=False)
     assert set(found.outcome.values) == {"CONVERGED"}
     for i in (0, 2, 4, 9):
-        state = sb.solve(sb.Groups(*(float(found[f"{name}_group"][i]) for name in ("speed", "load", "roughness"))))
+        state = sb.solve(groups_at(found, i))
         assert float(found.central_gap[i]) == pytest.approx(state.central_gap, rel=2e-6)
         assert float(found.contact_load_share[i]) == pytest.approx(state.contact_load_share, abs=2e-6)
 
@@ -72,17 +74,13 @@ def test_a_contact_has_its_films_in_si_units_and_its_notes(tmp_path):
 
 
 def test_the_coefficients_scale_friction_on_the_same_states(tmp_path):
-    text = (
-        "[groups]\nload = 0.1\nroughness = 1e-3\n[vary]\nboundary_friction = [0.5, 1]\nbeta = [1, 0.1]\nspeed = [1e-3, 1e-4]\n"
-    )
-    found = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset(grid=False)
-    cube = {
-        name: found[name].values.reshape(2, 2, 2)
-        for name in ("central_gap", "friction_published_fluid", "friction_asperities")
-    }
-    assert np.ptp(cube["central_gap"], axis=(0, 1)).tolist() == [0, 0]
-    assert cube["friction_published_fluid"][:, 1] == pytest.approx(0.1 * cube["friction_published_fluid"][:, 0])
-    assert cube["friction_asperities"][1] == pytest.approx(2 * cube["friction_asperities"][0])
+    axes = "boundary_friction = [0.5, 1]\nbeta = [1, 0.1]\nspeed = [1e-3, 1e-4]\n"
+    file = write(tmp_path, f"[groups]\nload = 0.1\nroughness = 1e-3\n[vary]\n{axes}")
+    found = sb.sweep(file, tmp_path / "store").to_dataset(grid=False)
+    names = "central_gap", "friction_published_fluid", "friction_asperities"
+    gap, fluid, asperities = (found[name].values.reshape(2, 2, 2) for name in names)
+    assert np.ptp(gap, axis=(0, 1)).tolist() == [0, 0]
+    assert fluid[:, 1] == pytest.approx(0.1 * fluid[:, 0]) and asperities[1] == pytest.approx(2 * asperities[0])
 
 
 def test_the_numbers_do_not_depend_on_the_workers(tmp_path):
@@ -110,13 +108,18 @@ def fail_at(monkeypatch, when, how):
 
 
 @pytest.mark.quick
-def test_a_failed_state_keeps_its_outcome_and_costs_no_other(tmp_path, monkeypatch):
-    fail_at(monkeypatch, lambda groups: 2e-4 < groups.speed < 9e-4, lambda: None)
-    found = sb.sweep(write(tmp_path, GRID.replace("17", "9")), tmp_path / "store")
+def test_a_failed_state_keeps_its_outcome_costs_no_other_and_is_not_tried_again(capsys, tmp_path, monkeypatch):
+    file = write(tmp_path, GRID.replace("17", "9"))
+    with monkeypatch.context() as patch:
+        fail_at(patch, lambda groups: 2e-4 < groups.speed < 9e-4, lambda: None)
+        answer = call(capsys, "sweep", file, "--out", tmp_path / "store")
+    said = "stribeck: 4 of 36 states did not converge; each has its outcome in the store.\n"
+    assert (answer.code, answer.err) == (1, said)
+    assert f"4 PATH_LOST: {Outcome.PATH_LOST.value}" in answer.out
+    found = sb.sweep(file, tmp_path / "store")
+    assert (found.computed, found.failed, found.outcomes) == (0, 4, {"CONVERGED": 32, "PATH_LOST": 4})
     table = found.to_dataset(grid=False)
     hit = (table.speed_group.values > 2e-4) & (table.speed_group.values < 9e-4)
-    assert found.failed == hit.sum() == 4
-    assert found.outcomes == {"CONVERGED": 32, "PATH_LOST": 4}
     assert set(table.outcome.values[hit]) == {"PATH_LOST"}
     assert np.isnan(table.friction_published.values[hit]).all()
     assert np.isfinite(table.friction_published.values[~hit]).all()
@@ -143,14 +146,6 @@ def test_a_state_that_rounding_bounds_keeps_its_value_with_its_error(tmp_path):
     assert all("Double precision keeps the error" in text for text in found.message.values[bounded])
 
 
-def test_failures_are_not_tried_again(tmp_path, monkeypatch):
-    with monkeypatch.context() as patched:
-        fail_at(patched, lambda groups: groups.speed < 3e-5, lambda: None)
-        assert sb.sweep(write(tmp_path, SMALL), tmp_path / "store").failed == 4
-    again = sb.sweep(tmp_path / "sweep.toml", tmp_path / "store")
-    assert (again.computed, again.failed) == (0, 4)
-
-
 # --- the command ---
 
 
@@ -170,64 +165,42 @@ def test_the_command_says_what_it_did(capsys, tmp_path):
     assert (again["states"], again["finished"], again["computed"], again["outcomes"]) == (12, 12, 0, {"CONVERGED": 12})
 
 
-def test_failed_states_make_exit_code_1(capsys, tmp_path, monkeypatch):
-    fail_at(monkeypatch, lambda groups: groups.speed < 3e-5, lambda: None)
-    answer = call(capsys, "sweep", write(tmp_path, SMALL), "--out", tmp_path / "store")
-    assert answer.code == 1
-    assert answer.err == "stribeck: 4 of 12 states did not converge; each has its outcome in the store.\n"
-    assert f"4 PATH_LOST: {Outcome.PATH_LOST.value}" in answer.out
+WRONG = [
+    ("", "SWEEP is missing; give it as in: stribeck sweep examples/sweep.toml --out sweep.sqlite"),
+    ("sweep.toml", "out is missing; give it as in: stribeck sweep"),
+    ("sweep.toml --out s --workers two", "workers = 'two' is not a whole number; write, for example, 101."),
+    ("sweep.toml --out s --workers 0", "workers = 0; it must be a whole number from 1 to 1024."),
+    ("sweep.toml --out s --export a.txt", "the name of this file must end in .nc, .csv, .zarr or .parquet."),
+    ("sweep.toml --out s --export old.nc", "old.nc exists already and is kept"),
+    ("sweep.toml --out sweep.toml", "sweep.toml is a file of something else; give the file of a store, or the name"),
+    ("no.toml --out s", "no.toml cannot be read (No such file or directory); give the path of a TOML sweep file."),
+    ("sweep.toml --out s --scheduler nonsense://x", "no scheduler answers at nonsense://x"),
+]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "sentence"),
-    [
-        ((), "SWEEP is missing; give it as in: stribeck sweep examples/sweep.toml --out sweep.sqlite"),
-        (("FILE",), "out is missing; give it as in: stribeck sweep"),
-        (("FILE", "--out", "s", "--workers", "two"), "workers = 'two' is not a whole number; write, for example, 101."),
-        (("FILE", "--out", "s", "--workers", "0"), "workers = 0; it must be a whole number from 1 to 1024."),
-        (
-            ("FILE", "--out", "s", "--export", "a.txt"),
-            "the name of this file must end in .nc, .csv, .zarr or .parquet.",
-        ),
-        (
-            ("FILE", "--out", "FILE"),
-            "sweep.toml is a file of something else; give the file of a store, or the name",
-        ),
-        (("no.toml", "--out", "s"), "no.toml cannot be read (No such file or directory); give the path of a TOML sweep file."),
-        (("FILE", "--out", "s", "--scheduler", "nonsense://x"), "no scheduler answers at nonsense://x"),
-    ],
-)
-def test_bad_input_is_a_sentence_and_exit_code_2(capsys, tmp_path, monkeypatch, arguments, sentence):
+def test_bad_input_is_a_sentence_and_exit_code_2_before_anything_is_solved(subtests, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     write(tmp_path, GRID)
-    answer = call(capsys, "sweep", *("sweep.toml" if word == "FILE" else word for word in arguments))
-    assert answer.code == 2
-    assert sentence in answer.err and answer.err.startswith("stribeck: ") and answer.err.endswith(".\n")
-    assert kept(tmp_path / "s") == {}
+    (tmp_path / "old.nc").write_text("mine")
+    for arguments, sentence in WRONG:
+        with subtests.test(arguments):
+            answer = call(capsys, "sweep", *arguments.split())
+            assert answer.code == 2
+            assert sentence in answer.err and answer.err.startswith("stribeck: ") and answer.err.endswith("\n")
+            assert kept(tmp_path / "s") == {}
+    assert (tmp_path / "old.nc").read_text() == "mine"
 
 
-def test_an_existing_export_is_kept_before_anything_is_solved(capsys, tmp_path):
-    (tmp_path / "sweep.nc").write_text("mine")
-    answer = call(capsys, "sweep", write(tmp_path, GRID), "--out", tmp_path / "store", "--export", tmp_path / "sweep.nc")
-    assert answer.code == 2
-    assert not (tmp_path / "store").exists()
-    assert (tmp_path / "sweep.nc").read_text() == "mine"
-
-
-def test_progress_tells_rate_and_time_left(tmp_path):
-    seen = []
-    sb.sweep(write(tmp_path, SMALL), tmp_path / "store", on_progress=seen.append)
+def test_progress_tells_rate_and_time_left_also_in_lines_of_a_batch_job(tmp_path, capsys, monkeypatch):
+    seen, file = [], write(tmp_path, SMALL)
+    sb.sweep(file, tmp_path / "store", on_progress=seen.append)
     assert [state.done for state in seen] == list(range(1, 13))
     assert {state.total for state in seen} == {12}
-    last = seen[-1]
-    assert last.seconds_left == 0 and last.rate > 0
+    assert seen[-1].seconds_left == 0 and seen[-1].rate > 0
     for state in seen[1:]:
         assert state.seconds_left == pytest.approx((12 - state.done) / state.rate)
-
-
-def test_a_batch_job_gets_lines_of_progress(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr("stribeck.cli.progress.LINE_INTERVAL", 0.0)
-    answer = call(capsys, "sweep", write(tmp_path, SMALL), "--out", tmp_path / "store")
+    answer = call(capsys, "sweep", file, "--out", tmp_path / "another")
     assert answer.code == 0
     assert re.fullmatch(r"stribeck: [0-9.e+]+ states/s, state 12 of 12, 0:00:00 left", answer.err.splitlines()[-1])
 
@@ -283,10 +256,8 @@ SLOW = pytest.mark.slow
 @pytest.mark.parametrize(
     ("workers", "number"),
     [
-        pytest.param(1, signal.SIGINT, id="ctrl-c, one process", marks=SLOW),
-        pytest.param(2, signal.SIGINT, id="ctrl-c, workers", marks=SLOW),
-        pytest.param(1, signal.SIGTERM, id="end of a batch job, one process"),
-        pytest.param(2, signal.SIGTERM, id="end of a batch job, workers", marks=SLOW),
+        (1, signal.SIGTERM),
+        *(pytest.param(*each, marks=SLOW) for each in ((1, signal.SIGINT), (2, signal.SIGINT), (2, signal.SIGTERM))),
     ],
 )
 def test_ctrl_c_keeps_what_is_finished_and_the_same_command_goes_on(capsys, tmp_path, workers, number):
@@ -389,7 +360,7 @@ def right(sweep, step=32):
     """Check some of the states of a sweep against cold solves."""
     found = sweep.to_dataset()
     for i in range(0, len(sweep), step):
-        state = sb.solve(sb.Groups(*(float(found[f"{name}_group"][i]) for name in ("speed", "load", "roughness"))))
+        state = sb.solve(groups_at(found, i))
         assert float(found.friction_balanced[i]) == pytest.approx(state.friction().total, rel=2e-6)
 
 
@@ -543,18 +514,12 @@ def test_ctrl_c_lets_several_processes_end_the_present_point_and_takes_effect_at
         progress.interrupt(signal.SIGINT, None)
 
 
-def test_ctrl_c_does_not_stop_the_writing():
+def test_ctrl_c_does_not_stop_the_writing_and_a_failure_caused_by_it_counts_as_interruption():
     progress = progress_module.Progress()
     progress(9, 9)
     progress.writes = True
-    try:
-        progress.interrupt(signal.SIGINT, None)
-        progress(9, 9)
-    except KeyboardInterrupt:
-        pytest.fail("the writing would have been stopped")
-
-
-def test_a_failure_caused_by_ctrl_c_counts_as_interruption():
+    progress.interrupt(signal.SIGINT, None)
+    progress(9, 9)
     with pytest.raises(KeyboardInterrupt), progress_module.interruptible() as progress:
         progress.wanted = True
         raise sb.SolveError(Outcome.PATH_LOST, None, "lost")
