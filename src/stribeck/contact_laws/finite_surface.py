@@ -21,8 +21,6 @@ __all__ = ["TAIL_COEFFICIENT", "FiniteSurface", "has_endless_tail"]
 # c, through the two mean gaps above 1.5 h_rms of examples/gfmd_mean_gap.csv, over Persson's law of the same spectrum.
 TAIL_COEFFICIENT = 0.065
 
-MAX_MEASURED_GAP = 2.629  # Largest mean gap over h_rms of that calculation; above it the law is an extrapolation.
-
 
 def has_endless_tail(law: AsperityLaw | None) -> bool:
     """Return whether a law falls as exp(-s) however far the surfaces are apart, as the exponential one and Persson's do."""
@@ -83,49 +81,16 @@ class FiniteSurface:
         return -math.inf if self.base is None else self.base.lowest
 
     def log_pressure(self, separation: Any) -> Any:
-        """Return ln(Phi) at the separation s.
-
-        Parameters
-        ----------
-        separation : ndarray
-            Separation s = alpha u/h_rms, of any shape [-].
-
-        Returns
-        -------
-        ndarray
-            Logarithm of p/(beta E*).
-        """
+        """Return ln(Phi) at the separation s."""
         base = -separation if self.base is None else self.base.log_pressure(separation)
         return base - TAIL_COEFFICIENT * np.maximum(separation / self.alpha, 0.0) ** 3
 
     def notes(self, separation: float) -> tuple[str, ...]:
-        """Return what the law says of a state.
-
-        Parameters
-        ----------
-        separation : float
-            Its minimum separation [-].
-
-        Returns
-        -------
-        tuple of str
-            The notes of the base; none of the exponential law.
-        """
+        """Return what the law says of a state."""
         return () if self.base is None else self.base.notes(separation)
 
     def area_fraction_at(self, pressure: Array) -> Array:
-        """Return the real area of contact over the apparent one.
-
-        Parameters
-        ----------
-        pressure : ndarray
-            Contact pressure Phi, of any shape [-].
-
-        Returns
-        -------
-        ndarray
-            Area of the base law; nan where it gives none.
-        """
+        """Return the real area of contact over the apparent one."""
         if isinstance(self.base, WithArea):
             return self.base.area_fraction_at(pressure)
         return np.full_like(np.asarray(pressure, dtype=float), np.nan)

@@ -93,18 +93,7 @@ class FunctionLaw:
         return {}
 
     def notes(self, separation: float) -> tuple[str, ...]:
-        """Return what to know about a state.
-
-        Parameters
-        ----------
-        separation : float
-            Its minimum separation [-].
-
-        Returns
-        -------
-        tuple of str
-            One sentence each.
-        """
+        """Return what to know about a state."""
         if separation >= self.checked[0]:
             return ()
         return (f"The minimum separation is {separation:.2g}, below the range in which the contact law was checked.",)

@@ -114,18 +114,7 @@ class PerssonLaw(ByValue):
         return {"alpha": self.alpha, "beta": self.beta, "roughness": self.rms_height}
 
     def notes(self, separation: float) -> tuple[str, ...]:
-        """Return notes on a state with this minimum separation.
-
-        Parameters
-        ----------
-        separation : float
-            Minimum separation s of the state [-].
-
-        Returns
-        -------
-        tuple of str
-            One sentence where nearly all of the surface is in contact there, else none.
-        """
+        """Return notes on a state with this minimum separation."""
         share = float(self.area_fraction(np.array([separation]))[0]) if separation > 0 else 1.0
         if share < SEALING_CONTACT_FRACTION:
             return ()
@@ -135,18 +124,7 @@ class PerssonLaw(ByValue):
         )
 
     def log_pressure(self, separation: Any) -> Any:
-        r"""Return :math:`\ln\Phi(s)`.
-
-        Parameters
-        ----------
-        separation : ndarray
-            Mean separation s = alpha u/h_rms, of any shape [-].
-
-        Returns
-        -------
-        ndarray
-            Logarithm of p/(beta E*); infinite where the separation is not positive.
-        """
+        r"""Return :math:`\ln\Phi(s)`."""
         s = separation
         position = np.log(np.maximum(s, np.finfo(float).tiny))
         index, t = self._locate(position)
@@ -178,18 +156,7 @@ class PerssonLaw(ByValue):
         return self.area_fraction_at(np.exp(self.log_pressure(separation)))
 
     def area_fraction_at(self, pressure: Array) -> Array:
-        """Return the real area of contact over the apparent one at a pressure.
-
-        Parameters
-        ----------
-        pressure : ndarray
-            Contact pressure Phi = p/(beta E*), of any shape [-].
-
-        Returns
-        -------
-        ndarray
-            Share of the area in contact, with all roughness of the spectrum [-].
-        """
+        """Return the real area of contact over the apparent one at a pressure."""
         return np.asarray(scipy.special.erf(self.area_slope * np.asarray(pressure, dtype=float)))
 
     def scaled(self, rms_height: float) -> PerssonLaw:

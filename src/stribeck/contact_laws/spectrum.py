@@ -24,7 +24,7 @@ from stribeck._types import Array
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import ByValue
-from stribeck.quantities.schema import Input
+from stribeck.quantities.schema import Input, law
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["SelfAffine", "Spectrum", "height_of_roughness", "positive", "table_of"]
@@ -216,26 +216,13 @@ class Spectrum(ByValue):
         return Spectrum(nodes, self.at(nodes))
 
 
-@dataclass(frozen=True)
+@law
 class SelfAffine:
-    r"""Self-affine roughness: a flat roll-off, then a power law.
+    r"""Self-affine roughness: a flat roll-off, then a power law; without ``roll_off`` the power law alone, from q_0.
 
     .. math::
 
         C(q) = C_r \begin{cases} 1 & q_0 \le q \le q_r \\ (q/q_r)^{-2(1+H)} & q_r \le q \le q_1 \end{cases}
-
-    Parameters
-    ----------
-    h_rms : str or float
-        Root mean square of the height, which sets :math:`C_r` [m].
-    q0 : str or float
-        Wave number :math:`q_0` of the longest roughness [1/m].
-    q1 : str or float
-        Wave number :math:`q_1` of the shortest roughness [1/m].
-    hurst : float
-        Hurst exponent :math:`0 < H \le 1` [-].
-    roll_off : str or float, optional
-        Wave number :math:`q_r` from which the spectrum falls [1/m]; :math:`q_0` by default, that is no roll-off.
 
     Raises
     ------
@@ -253,17 +240,21 @@ class SelfAffine:
     1e-06
     """
 
-    h_rms: Input = Input(label="rms height", dimension="length", typical="1 um")
-    q0: Input = Input(label="wave number q₀", dimension="wavenumber", typical="6e4 1/m")
-    q1: Input = Input(label="wave number q₁", dimension="wavenumber", typical="6e7 1/m")
-    hurst: Input = Input(label="Hurst exponent", dimension="number", typical="0.8", highest=1.0, reason="it is often near 0.8")
+    h_rms: Input = Input(label="rms height", symbol=r"$h_\mathrm{rms}$", dimension="length", typical="1 um")
+    q0: Input = Input(label="wave number q₀", symbol="$q_0$", dimension="wavenumber", typical="6e4 1/m")
+    q1: Input = Input(label="wave number q₁", symbol="$q_1$", dimension="wavenumber", typical="6e7 1/m")
+    hurst: Input = Input(
+        label="Hurst exponent", symbol="$H$", dimension="number", typical="0.8", highest=1.0, reason="it is often near 0.8"
+    )
     roll_off: Input = Input(
         label="roll-off wave number",
+        symbol="$q_r$",
         dimension="wavenumber",
         typical="3e5 1/m",
         zero=True,
         optional=True,
-        default=0.0,  # which stands for q0
+        default=0.0,
+        without="q0",
     )
 
     def __post_init__(self) -> None:

@@ -161,18 +161,7 @@ class TableLaw:
         return self._spline[2]
 
     def log_pressure(self, separation: Any) -> Any:
-        """Return ln(Phi) at the separation s.
-
-        Parameters
-        ----------
-        separation : ndarray
-            Separation s, of any shape [-].
-
-        Returns
-        -------
-        ndarray
-            Logarithm of p/(beta E*), of the same shape.
-        """
+        """Return ln(Phi) at the separation s."""
         first, last, slope_first, slope_last = self._ends
         spline, slope, _ = self._spline
         inside = np.clip(separation, first, last)
@@ -181,18 +170,7 @@ class TableLaw:
         return found + np.where(outside < 0, slope_first, slope_last) * outside
 
     def notes(self, separation: float) -> tuple[str, ...]:
-        """Return what to know about a state.
-
-        Parameters
-        ----------
-        separation : float
-            Its minimum separation [-].
-
-        Returns
-        -------
-        tuple of str
-            One sentence each.
-        """
+        """Return what to know about a state."""
         first, last = self.separation[0], self.separation[-1]
         found = []
         if separation < first:

@@ -28,7 +28,7 @@ from stribeck.numerics.dual import with_slope
 from stribeck.numerics.trace import pointwise
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["MIN_FLOW_FACTOR", "PatirCheng", "add_floor", "homotopy_roughness", "nominal_separation", "scaled_roughness"]
+__all__ = ["MIN_FLOW_FACTOR", "PatirCheng", "add_floor", "nominal_separation", "scaled_roughness"]
 
 MIN_FLOW_FACTOR = 1e-4  # Least pressure flow factor: without any flow the pressure gradient would have no bound.
 
@@ -36,10 +36,6 @@ MIN_FLOW_FACTOR = 1e-4  # Least pressure flow factor: without any flow the press
 BLEND_FRACTION = 0.5
 # Continuous derivatives of that blend; with one, the series of a curve converge on a twentieth of their length there.
 BLEND_DERIVATIVES = 4
-
-HOMOTOPY_EXPONENT = 3.0  # Natural logarithm by which the roughness is smaller half-way along the homotopy from smooth walls.
-MIN_HOMOTOPY_PART = 1e-9  # Least part of the homotopy that is divided by.
-MAX_HOMOTOPY_EXPONENT = 300.0  # Largest natural logarithm by which the roughness is smaller; its exponential stays above zero.
 
 Factors = TypeVar("Factors", bound=FlowFactors)
 
@@ -310,12 +306,6 @@ def scaled_roughness(alpha: float | None, units: FilmUnits) -> float:
     if alpha is None:
         raise InputError("flow factors of groups need alpha, the coefficient of the contact law: about 2, as PatirCheng(2.0).")
     return alpha * units.decay_length / units.gap
-
-
-def homotopy_roughness(sigma: float, part: float) -> float:
-    """Return the roughness at a part of the homotopy from smooth walls: nearly zero at part 0, the whole at 1."""
-    # Through every power of ten: the flow closes where the roughness is as high as the film, which may be far thinner.
-    return sigma * math.exp(-min(HOMOTOPY_EXPONENT * (1 - part) / max(part, MIN_HOMOTOPY_PART), MAX_HOMOTOPY_EXPONENT))
 
 
 def with_sigma(factors: Factors, sigma: float) -> Factors:

@@ -1,12 +1,13 @@
 """What any part of the package needs to know of one number: it stands once, where the number is declared.
 
-An :class:`Input` in the body of a frozen dataclass declares a field of it::
+An :class:`Input` in the body of a :func:`law` declares a field of it::
 
-    @dataclass(frozen=True)
+    @law
     class Carreau(RateLaw):
         relaxation_time: Input = Input(label="relaxation time", symbol="$t$", dimension="time", typical="1 ms", ...)
 
-The field takes text with a unit or a number in SI units, and holds a number in SI units within its range.
+The field takes text with a unit or a number in SI units, and holds a number in SI units within its range,
+and the docstring of the class says so.
 """
 
 from __future__ import annotations
@@ -15,10 +16,11 @@ import inspect
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar, cast, dataclass_transform
 
 import numpy as np
 
+from stribeck.quantities.docstrings import complete_docstring
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
 
@@ -87,6 +89,12 @@ class Input:
         return DIMENSIONS[self.dimension].unit.replace("*", " ") or "1"
 
     @property
+    def kind(self) -> str:
+        """What a docstring says of its type."""
+        kind = "str or float" if DIMENSIONS[self.dimension].unit else "float"
+        return kind if self.default is None else f"{kind}, optional"
+
+    @property
     def description(self) -> str:
         """What a docstring says of it."""
         symbol = f", :math:`{self.symbol.strip('$')}`" if self.symbol else ""
@@ -153,9 +161,28 @@ class Series(Input):
         law.__dict__[self.name] = tuple(map(self.checked, value))
 
     @property
+    def kind(self) -> str:
+        """What a docstring says of its type."""
+        return f"sequence of {super().kind}"
+
+    @property
     def example(self) -> str:
         """A value as a case file has it."""
         return self.typical
+
+
+Kind = TypeVar("Kind", bound=type)
+
+RAISES = "InputError\n    Where a value is impossible or its unit is wrong."  # Section of the docstring of every law
+
+
+@dataclass_transform(frozen_default=True)
+def law(kind: Kind) -> Kind:
+    """Return a frozen dataclass; its docstring says of its numbers what their declarations say."""
+    made: Any = dataclass(frozen=True)(kind)
+    words = {name: f"{row.kind}\n    {row.description}" for name, row in numbers_of(made).items()}
+    made.__doc__ = complete_docstring(made, words, raises=RAISES)
+    return cast("Kind", made)
 
 
 def numbers_of(law: type | None) -> dict[str, Input]:

@@ -23,7 +23,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar
 
@@ -33,7 +32,7 @@ from numpy.polynomial import chebyshev
 from stribeck._types import Array, Flags
 from stribeck.numerics.cells import Cells
 from stribeck.numerics.panels import Mesh, reference
-from stribeck.quantities.schema import Input, numbers_of
+from stribeck.quantities.schema import Input, law, numbers_of
 from stribeck.solids.half_plane import nodal_deflection
 from stribeck.solids.solid import Lengths, Solid
 
@@ -65,22 +64,9 @@ FAR_TARGETS = 40  # Chebyshev targets of that interpolation.
 FAR_NODES = 32  # Evenly spread nodes over the kernel's radius for FAR_TARGETS.
 
 
-@dataclass(frozen=True)
+@law
 class Layer(Solid):
-    """An elastic layer bonded to a rigid base: it neither slides on the base nor lifts off.
-
-    Parameters
-    ----------
-    layer_thickness : str or float
-        Its thickness, > 0 [m]; with groups in Hertz half-widths a of the half-plane.
-    poisson_ratio : float
-        Poisson's ratio, 0 to 0.5; 0.5 is incompressible.
-
-    Raises
-    ------
-    InputError
-        If an argument is outside its range.
-    """
+    """An elastic layer bonded to a rigid base: it neither slides on the base nor lifts off."""
 
     kind: ClassVar[str] = "layer"
     name: ClassVar[str] = "bonded layer"

@@ -20,7 +20,6 @@ Source: [Hunter 1961] for rolling on the standard linear solid; tested against P
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar
 
@@ -29,7 +28,7 @@ from numpy.polynomial.legendre import leggauss
 
 from stribeck._types import Array
 from stribeck.numerics.panels import Mesh, reference
-from stribeck.quantities.schema import Input, Series
+from stribeck.quantities.schema import Input, Series, law
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.solids.half_plane import HalfPlane, as_solid
 from stribeck.solids.solid import Lengths, Solid, lengths_of
@@ -75,26 +74,18 @@ class _Viscoelastic(Solid):
         return self.base.far_gap(x)
 
 
-@dataclass(frozen=True)
+@law
 class StandardLinearSolid(_Viscoelastic):
     r"""The body with one retardation time: a spring in series with a spring and a damper side by side.
 
     .. math:: J(t) = \frac1r + \Big(1 - \frac1r\Big) (1 - e^{-t/\tau})
 
+    :math:`\tau` is that of creep; the relaxation time is :math:`\tau/r`.
+
     Parameters
     ----------
-    retardation_time : str or float
-        Retardation time :math:`\tau > 0` of creep [s]; the relaxation time is :math:`\tau/r`.  With groups the Deborah number
-        :math:`u_1 \tau/a` of the state.
-    modulus_ratio : float
-        :math:`r > 1`, the modulus at once over that of the relaxed body, which is the contact's [-].
     base : solid of sb.solids, optional
         The shape of the body; a half-space without it.
-
-    Raises
-    ------
-    InputError
-        Where a value is impossible or a unit is wrong.
     """
 
     kind: ClassVar[str] = "standard-linear-solid"
@@ -140,7 +131,7 @@ class StandardLinearSolid(_Viscoelastic):
         return 1 / self.modulus_ratio, ((1 - 1 / self.modulus_ratio, self.retardation_time),)
 
 
-@dataclass(frozen=True)
+@law
 class Prony(_Viscoelastic):
     r"""The body with a Prony series of its relaxation.
 
@@ -148,17 +139,8 @@ class Prony(_Viscoelastic):
 
     Parameters
     ----------
-    relaxation_times : sequence of str or float
-        Relaxation times :math:`\tau_i > 0` [s]; with groups :math:`u_1 \tau_i/a` of the state.
-    moduli : sequence of float
-        :math:`g_i > 0`, over the relaxed modulus, which is the contact's [-].
     base : solid of sb.solids, optional
         The shape of the body; a half-space without it.
-
-    Raises
-    ------
-    InputError
-        Where a value is impossible, a unit is wrong, or times and moduli are not as many.
 
     Notes
     -----

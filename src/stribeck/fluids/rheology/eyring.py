@@ -8,18 +8,15 @@ Source: [Eyring 1936].
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.fluids.laws import FilmUnits, Profile, RateLaw
-from stribeck.quantities.schema import Input
+from stribeck.quantities.schema import Input, law
 
 __all__ = ["Eyring"]
-
-STRESS_RATIO_AT_START = 1e-3  # Eyring stress over that at the start of the homotopy from a nearly Newtonian fluid.
 
 MIN_HALF_DIFFERENCE = 1e-150  # Least half difference of the wall stresses over Eyring's stress: its square is above zero.
 MAX_HALF_DIFFERENCE = 300.0  # Largest half difference of the wall stresses over Eyring's stress: the rates stay finite.
@@ -34,21 +31,11 @@ MAX_STEPS = 80  # Newton steps of a column before its flow counts as not found.
 SECOND_MOMENT_SERIES = [2 * k / math.factorial(2 * k + 1) for k in range(9, 0, -1)]
 
 
-@dataclass(frozen=True)
+@law
 class Eyring(RateLaw):
     r"""The fluid whose stress grows as the logarithm of the rate, as that of oils does at high pressure.
 
     .. math:: \dot\gamma = \frac{\tau_0}{\eta} \sinh\frac{\tau}{\tau_0}
-
-    Parameters
-    ----------
-    eyring_stress : str or float
-        Eyring's stress :math:`\tau_0 > 0` [Pa]; with groups :math:`\tau_0 u_\mathrm{Hz}/(\eta_0 U)` at their speed.
-
-    Raises
-    ------
-    InputError
-        Where the value is impossible or its unit is wrong.
 
     Notes
     -----

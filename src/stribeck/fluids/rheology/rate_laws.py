@@ -16,10 +16,8 @@ Source: [Carreau 1972], [Cross 1965].
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from inspect import cleandoc
-from typing import Any, ClassVar, Self, TypeVar
+from dataclasses import replace
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -32,12 +30,10 @@ from stribeck.fluids.rheology.tabulated import (
     TabulatedLaw,
     table_of,
 )
-from stribeck.quantities.schema import Input
+from stribeck.quantities.schema import Input, law
 from stribeck.quantities.units import InputError
 
 __all__ = ["Carreau", "Cross", "PowerLaw"]
-
-Plateaus = TypeVar("Plateaus", bound="_BetweenPlateaus")
 
 # Shear rate times relaxation time below which a power law has its plateau: without one, its drag has no bound for n <= 1/2.
 PLATEAU_RATE = 1e-8
@@ -55,35 +51,10 @@ INFINITE_VISCOSITY = Input(
     default=0.0,
 )
 
-PLATEAU_RATIO_AT_START = 1e-3  # Factor between the plateaus at both ends of the homotopy from a nearly Newtonian fluid.
 
-
-@dataclass(frozen=True)
+@law
 class _BetweenPlateaus(TabulatedLaw):
-    r"""A law with a plateau of the viscosity at low and one at high rates.
-
-    :math:`\eta_0` is the viscosity of the contact.
-
-    Parameters
-    ----------
-    relaxation_time : str or float
-        :math:`t > 0` [s]; with groups :math:`t U/u_\mathrm{Hz}`, the Weissenberg number at their speed.
-    exponent : float
-        Of the law [-].
-    infinite_viscosity : str or float
-        :math:`\eta_\infty \ge 0` [Pa s], below :math:`\eta_0`; with groups over :math:`\eta_0`.
-
-    Raises
-    ------
-    InputError
-        Where a value is impossible or its unit is wrong.
-
-    Notes
-    -----
-    If the viscosity grows with the pressure, so do both plateaus and the time t: the stress at which thinning begins is held.
-
-    Source: [law].
-    """
+    """A law with a plateau of the viscosity at low and one at high rates, below that of the contact."""
 
     relaxation_time: Input = RELAXATION_TIME
     exponent: Input = EXPONENT
@@ -103,22 +74,17 @@ class _BetweenPlateaus(TabulatedLaw):
         return self.exponent, self.infinite_viscosity
 
 
-def _with_shared_docstring(exponent: str, source: str) -> Callable[[type[Plateaus]], type[Plateaus]]:
-    """Return the decorator that adds to a docstring what both laws say of themselves in the same words."""
-
-    def decorator(law: type[Plateaus]) -> type[Plateaus]:
-        law.__doc__ = cleandoc(law.__doc__ or "") + "\n\n" + cleandoc(_BetweenPlateaus.__doc__ or "").partition("\n\n")[2]
-        law.__doc__ = law.__doc__.replace("Of the law [-].", exponent).replace("[law]", source)
-        return law
-
-    return decorator
-
-
-@_with_shared_docstring(":math:`n`, 0.05 to 1 [-]; 1 is the Newtonian fluid.", "[Carreau 1972]")
+@law
 class Carreau(_BetweenPlateaus):
     r"""The fluid that thins from one plateau of its viscosity to another.
 
     .. math:: \eta = \eta_\infty + (\eta_0 - \eta_\infty) \, [1 + (t \dot\gamma)^2]^{(n-1)/2}
+
+    Notes
+    -----
+    If the viscosity grows with the pressure, so do both plateaus and the time t: the stress at which thinning begins is held.
+
+    Source: [Carreau 1972].
     """
 
     name: ClassVar[str] = "carreau"
@@ -134,11 +100,17 @@ class Carreau(_BetweenPlateaus):
         return -21.0
 
 
-@_with_shared_docstring(":math:`m`, 0.1 to 0.95 [-]; the viscosity falls as the rate to the power -m.", "[Cross 1965]")
+@law
 class Cross(_BetweenPlateaus):
     r"""The fluid that thins from one plateau of its viscosity to another, more gradually than Carreau's.
 
     .. math:: \eta = \eta_\infty + \frac{\eta_0 - \eta_\infty}{1 + (t \dot\gamma)^m}
+
+    Notes
+    -----
+    If the viscosity grows with the pressure, so do both plateaus and the time t: the stress at which thinning begins is held.
+
+    Source: [Cross 1965].
     """
 
     name: ClassVar[str] = "cross"
@@ -162,7 +134,7 @@ class Cross(_BetweenPlateaus):
         return -38.0 / self.exponent
 
 
-@dataclass(frozen=True)
+@law
 class PowerLaw(RateLaw):
     r"""The fluid whose viscosity falls as a power of the rate, above a rate far below those of films.
 
@@ -170,19 +142,6 @@ class PowerLaw(RateLaw):
 
     Of cylinders only.  The viscosity of the contact is that at the rate 1/t.  With the consistency
     :math:`K = \eta_0 t^{n-1}`, that is :math:`\tau = K \dot\gamma^n`.
-
-    Parameters
-    ----------
-    relaxation_time : str or float
-        :math:`t > 0`, one over the rate at which the viscosity is that of the contact [s]; with groups
-        :math:`t U/u_\mathrm{Hz}` at their speed.
-    exponent : float
-        :math:`n`, 0.05 to 1 [-]; 1 is the Newtonian fluid.
-
-    Raises
-    ------
-    InputError
-        Where a value is impossible or its unit is wrong.
 
     Notes
     -----
@@ -235,15 +194,6 @@ class PowerLaw(RateLaw):
         n, unit = self.exponent, PLATEAU_RATE**self.exponent
         first, second = table_of(Carreau, n).moments(rate / PLATEAU_RATE, stress / unit)
         return PLATEAU_RATE * unit * first, PLATEAU_RATE * unit**2 * second
-
-
-def _homotopy_plateau(ratio: float, part: float) -> float:
-    """Return a viscosity ratio that falls from near one to ``ratio`` as the part rises to one."""
-    return (
-        ratio + (0.999 - ratio) * (PLATEAU_RATIO_AT_START**part - PLATEAU_RATIO_AT_START) / (1 - PLATEAU_RATIO_AT_START)
-        if part < 1
-        else ratio
-    )
 
 
 def _ratio(viscosity: float, units: FilmUnits) -> float:

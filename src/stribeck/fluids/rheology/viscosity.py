@@ -18,7 +18,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.fluids.laws import DensityLaw, FilmUnits, ViscosityLaw
-from stribeck.quantities.schema import Input
+from stribeck.quantities.schema import Input, law
 from stribeck.quantities.units import InputError
 
 __all__ = ["MAX_PRESSURE_EXPONENT", "Barus", "Constant", "DowsonHigginson", "Incompressible", "Roelands", "check_range"]
@@ -56,23 +56,15 @@ class Constant(ViscosityLaw):
         return np.zeros_like(pressure)
 
 
-@dataclass(frozen=True)
+@law
 class Barus(ViscosityLaw):
     r"""The viscosity that grows exponentially with the pressure, :math:`\eta = \eta_0 e^{\alpha_p p}`.
 
-    Parameters
-    ----------
-    pressure_coefficient : str or float
-        :math:`\alpha_p \ge 0` [1/Pa], with groups [1/p_Hz]; mineral oils have 10 to 30 1/GPa, water about 0.
-
-    Raises
-    ------
-    InputError
-        Where the value is impossible or its unit is wrong.  A film refuses :math:`\alpha_p p_\mathrm{Hz}` above 5: there the
-        pressure has the spike of hard elastohydrodynamics, which needs a solver that follows it.
-
     Notes
     -----
+    A film refuses :math:`\alpha_p p_\mathrm{Hz}` above 5: there the pressure has the spike of hard elastohydrodynamics, which
+    needs a solver that follows it.
+
     Source: [Barus 1893].  Above about 0.1 GPa :class:`Roelands` is nearer to measurements.
     """
 
@@ -90,30 +82,18 @@ class Barus(ViscosityLaw):
         return self.pressure_coefficient * pressure
 
 
-@dataclass(frozen=True)
+@law
 class Roelands(ViscosityLaw):
     r"""The viscosity that grows with a power of the pressure in its logarithm.
 
     .. math:: \ln\frac{\eta}{\eta_0} = S \left[\left(1 + \frac{p}{p_r}\right)^z - 1\right], \quad
         S = \ln\frac{\eta_0}{\eta_r}, \quad z = \frac{\alpha_p p_r}{S}
 
-    Parameters
-    ----------
-    pressure_coefficient : str or float
-        :math:`\alpha_p \ge 0`, the slope of :math:`\ln \eta` at ambient pressure [1/Pa], with groups [1/p_Hz].
-    reference_pressure : str or float
-        :math:`p_r > 0` [Pa], with groups [p_Hz].
-    reference_viscosity : str or float
-        :math:`\eta_r > 0` [Pa s], below the viscosity of the fluid; with groups over that viscosity.
-
-    Raises
-    ------
-    InputError
-        Where a value is impossible or its unit is wrong.  A film refuses :math:`\alpha_p p_\mathrm{Hz}` above 5, see
-        :class:`Barus`.
-
     Notes
     -----
+    :math:`\eta_r` is below the viscosity of the fluid.  A film refuses :math:`\alpha_p p_\mathrm{Hz}` above 5, see
+    :class:`Barus`.
+
     Source: [Roelands 1966]; a fit to oils up to about 0.5 GPa.
     """
 
@@ -178,23 +158,11 @@ class Incompressible(DensityLaw):
         return np.ones_like(pressure)
 
 
-@dataclass(frozen=True)
+@law
 class DowsonHigginson(DensityLaw):
     r"""The density of a mineral oil, which a high pressure raises by a third at most.
 
     .. math:: \frac{\rho}{\rho_0} = \frac{c + k p}{c + p}
-
-    Parameters
-    ----------
-    density_pressure : str or float
-        :math:`c > 0` [Pa], with groups [p_Hz].
-    density_limit : float
-        :math:`k > 1`, the density ratio that no pressure exceeds [-].
-
-    Raises
-    ------
-    InputError
-        Where a value is impossible or a unit is wrong.
 
     Notes
     -----
