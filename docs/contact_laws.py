@@ -51,9 +51,6 @@ TAIL_FRICTION = 0.7
 TAIL_SPEEDS = (5e-3, 0.5)
 GAPS = (0.2644, 0.4398, 0.854, 1.1806, 1.883, 2.629)
 
-ROOM = 1e-2
-"""Relative difference of friction from which two laws are said to part."""
-
 
 @dataclass(frozen=True)
 class Pair:
@@ -108,26 +105,6 @@ def comparison(pairs: dict[float, tuple[Pair, Pair]]) -> str:
     for law in ("exponential", "Persson"):
         head += [f"{law}: $s$ at rest", "plateau $\\mu/\\mu_0$", "speed at 5 % fluid", "speed at 10 % contact friction"]
     return table(head, rows)
-
-
-def parting(pairs: dict[float, tuple[Pair, Pair]]) -> str:
-    """Return where along each curve the friction of both laws differs, and by how much at most."""
-    rows = []
-    for load in TOLD:
-        one, other = pairs[load]
-        speeds = one.curve.values
-        difference = one.curve.friction / other.curve.friction - 1
-        apart = np.nonzero(np.abs(difference) > ROOM)[0]
-        worst = int(np.argmax(np.abs(difference)))
-        fluid = one.curve.observable("fluid_load_share")[worst]
-        ends = f"{number(float(speeds[apart[0]]), 2)} to {number(float(speeds[apart[-1]]), 2)}" if len(apart) else "nowhere"
-        minimum = [pair.curve.minimum.friction if pair.curve.minimum else math.nan for pair in (one, other)]
-        rows.append(
-            [number(load), ends, f"{100 * difference[worst]:+.0f} %", number(float(speeds[worst]), 2), f"{100 * fluid:.0f} %"]
-            + [number(value, 4) for value in minimum]
-        )
-    head = ["$F$", "speeds where $\\mu$ differs by over 1 %", "largest difference", "at speed", "fluid's share there"]
-    return table([*head, "minimum $\\mu/\\mu_0$, exponential", "Persson"], rows)
 
 
 def simulated(alpha: float, beta: float) -> sb.contact_laws.TableLaw:
@@ -270,7 +247,7 @@ def main(arguments: Sequence[str] = ()) -> None:
             pairs[load] = solved(load, None, law.beta), solved(load, law, law.beta)
             print(f"load {load:g} done", flush=True)
         draw(pairs)
-        blocks |= {"comparison": comparison(pairs), "parting": parting(pairs)}
+        blocks |= {"comparison": comparison(pairs)}
     PAGE.write_text(filled(PAGE.read_text(), blocks))
 
 
