@@ -9,15 +9,20 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from typing import Any, get_args
+from typing import Any, TypeVar, get_args
 
 from stribeck.quantities import docstrings
+
+F = TypeVar("F", bound=Callable[..., Any])
 
 ARGUMENTS: dict[str, str] = {
     "x": "Positions [a]; broadcast with the groups.",
     "terms": "1, or 2 for the term in brackets too.",
     "beta": "Coefficient of the contact law [-].",
     "boundary_friction": "Friction coefficient of the dry contact [-].",
+    "groups": "Uses ``load`` and ``roughness`` [-]; arrays broadcast.",
+    "load": "Load group [-], between 0 and 1.",
+    "speed": "Speed group, zero or positive [-].",
     "slope": "a/R [-].",
     "share": "Part of the load on the fluid [-], between 0 and 1.",
     "form": "Form of :func:`phi`.",
@@ -33,6 +38,7 @@ KINDS: dict[str, str] = {
     "Value": "float or array_like",
     "float | Array": "float or array_like",
     "float | None": "float, optional",
+    "Value | None": "float or array_like, optional",
 }
 """What annotations are called; a choice of words is listed, and the others stand as they are."""
 
@@ -81,20 +87,39 @@ def completed(
 ) -> str:
     """Return the docstring of a formula with all that its table entry and the tables here say of it."""
     groups = "all three groups" if len(uses) == 3 else " and ".join(f"``{name}``" for name in uses)
-    states = "Groups\n    " + (f"Uses {groups} [-]; arrays broadcast." if uses else "Any; the answer takes their shape.")
-    common = {"groups": states}
+    words = {"groups": f"Uses {groups} [-]; arrays broadcast." if uses else "Any; the answer takes their shape."}
+    if geometry == "point":
+        words["x"] = f"Positions, or distances from the middle{ARGUMENTS['x'].removeprefix('Positions')}"
+    offset = OFFSETS[geometry] if predicts == "offset" else ""
+    value = f"{VALUES[predicts]}{offset}; nan {undefined}." if undefined else f"{VALUES[predicts]}{offset}."
+    return _filled(function, words, f"float or ndarray\n    {value}", "", evidence)
+
+
+def described(
+    returns: str, *, kind: str = "float or ndarray", raises: str = "", source: str = "", **words: str
+) -> Callable[[F], F]:
+    """Return the decorator that completes the docstring of a function that is no formula; ``words`` describe its arguments."""
+
+    def decorate(function: F) -> F:
+        if function.__doc__ is not None:  # as it is under `python -OO`
+            refused = f"InputError\n    {raises}" if raises else ""
+            function.__doc__ = _filled(
+                function, words, f"{kind}\n    {returns}", refused, f"Source: {source}." if source else ""
+            )
+        return function
+
+    return decorate
+
+
+def _filled(function: Callable[..., Any], words: dict[str, str], returns: str, refused: str, notes: str) -> str:
+    """Return the docstring of a function with the sections that it leaves out, its arguments as in the signature."""
     names = inspect.signature(function).parameters
-    for name, argument in names.items():
-        words = ARGUMENTS.get(name, "")
-        if name == "x" and geometry == "point":
-            words = f"Positions, or distances from the middle{words.removeprefix('Positions')}"
-        if name != "groups":
-            common[name] = f"{_kind(function, argument)}\n    {words}"
-    refused = [f"InputError\n    {ERRORS[name]}" for name in names if name in ERRORS]
-    value = "float or ndarray\n    " + VALUES[predicts]
-    value += OFFSETS[geometry] if predicts == "offset" else ""
-    value += f"; nan {undefined}." if undefined else "."
-    return docstrings.complete_docstring(function, common, value, "\n".join(refused), evidence)
+    common = {
+        name: f"{_kind(function, argument)}\n    {words.get(name) or ARGUMENTS.get(name, '')}"
+        for name, argument in names.items()
+    }
+    refused = refused or "\n".join(f"InputError\n    {ERRORS[name]}" for name in names if name in ERRORS)
+    return docstrings.complete_docstring(function, common, returns, refused, notes)
 
 
 def _kind(function: Callable[..., Any], argument: inspect.Parameter) -> str:

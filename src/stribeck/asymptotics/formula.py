@@ -14,7 +14,7 @@ import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Concatenate, Generic, Literal, ParamSpec
+from typing import Annotated, Any, Concatenate, Generic, Literal, ParamSpec
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from stribeck.contacts.contact import model_words
 from stribeck.contacts.groups import Geometry, Groups
 from stribeck.contacts.model import BASE_MODEL
 from stribeck.quantities.arrays import real_array
+from stribeck.quantities.docstrings import Described
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import InputError, show
 
@@ -115,20 +116,12 @@ COEFFICIENT_RATIO = "beta/mu0"
 
 
 @dataclass(frozen=True)
-class Limit:
-    """Closed interval of one parameter.
+class Limit(Described):
+    """Closed interval of one parameter."""
 
-    Attributes
-    ----------
-    parameter : str
-        Key of :data:`PARAMETERS`, or :data:`COEFFICIENT_RATIO`.
-    low, high : float
-        Ends of the interval.
-    """
-
-    parameter: str
-    low: float = 0.0
-    high: float = math.inf
+    parameter: Annotated[str, "key of :data:`PARAMETERS`, or :data:`COEFFICIENT_RATIO`"]
+    low: Annotated[float, "lower end"] = 0.0
+    high: Annotated[float, "upper end"] = math.inf
 
     def holds(self, groups: Groups, ratio: Value = 1.0) -> Flags:
         """Return where the parameter lies in the interval, for groups and for coefficients of this ratio beta/mu0."""
@@ -144,52 +137,25 @@ class Limit:
 
 
 @dataclass(frozen=True, eq=False)
-class Formula(Generic[Arguments]):
-    r"""A formula: call it with :class:`~stribeck.Groups`, of floats or of arrays that broadcast.
+class Formula(Described, Generic[Arguments]):
+    """A formula: call it with :class:`~stribeck.Groups`, of floats or of arrays that broadcast."""
 
-    Attributes
-    ----------
-    function : callable
-        The formula without any check of its range.
-    predicts : str
-        The quantity of a solved state that it predicts: a key of :data:`evidence.formulas.MEASURED`.
-    plane : {"smooth", "rest", "mixed"}
-        Whether it is about the smooth contact (roughness 0, whatever the groups say), the contact at rest (speed 0), or both.
-    limits : tuple of Limit
-        Its range.
-    worst : float
-        Largest relative error in this range, measured.
-    small : str
-        The parameter with which its error vanishes, key of :data:`PARAMETERS`; empty for a fit over the whole range.
-    error_order : float
-        The relative error goes as ``small**error_order``.
-    approach : callable or None
-        ``approach(small)`` returns the groups along which the tests follow the error.
-    steps : tuple of float
-        Values of ``small`` at which the tests do so.
-    interval : callable or None
-        For a field, ``interval(groups)`` returns the positions [a] between which it is compared with the solver.
-    source : str
-        Its source.
-    geometry : {"line", "point"}
-        Whether it is about the cylinder or about the ball.
-    uses : tuple of str
-        The groups on which its value depends.
-    """
-
-    function: Callable[Concatenate[Groups, Arguments], Value]
-    predicts: str
-    plane: Plane
-    limits: tuple[Limit, ...]
-    worst: float
-    small: str
-    error_order: float
-    approach: Callable[[float], Groups] | None
-    steps: tuple[float, ...]
-    interval: Callable[[Groups], tuple[float, float]] | None
-    source: str
-    geometry: Geometry = "line"
-    uses: tuple[str, ...] = GROUPS
+    function: Annotated[Callable[Concatenate[Groups, Arguments], Value], "the formula without any check of its range"]
+    predicts: Annotated[str, "the quantity of a solved state that it predicts, a key of :data:`evidence.formulas.MEASURED`"]
+    plane: Annotated[Plane, "smooth contact (roughness 0, whatever the groups say), contact at rest (speed 0), or both"]
+    limits: Annotated[tuple[Limit, ...], "its range"]
+    worst: Annotated[float, "largest relative error in this range, measured"]
+    small: Annotated[str, "parameter with which the error vanishes, a key of :data:`PARAMETERS`; empty for a fit"]
+    error_order: Annotated[float, "the relative error goes as ``small**error_order``"]
+    approach: Annotated[Callable[[float], Groups] | None, "``approach(small)``: groups along which the error is followed"]
+    steps: Annotated[tuple[float, ...], "values of ``small`` at which tests follow it"]
+    interval: Annotated[
+        Callable[[Groups], tuple[float, float]] | None,
+        "of a field: ``interval(groups)``, the positions [a] between which it is compared with the solver",
+    ]
+    source: Annotated[str, "its source"]
+    geometry: Annotated[Geometry, "whether it is about the cylinder or about the ball"] = "line"
+    uses: Annotated[tuple[str, ...], "the groups on which its value depends"] = GROUPS
 
     @property
     def module(self) -> str:
@@ -246,8 +212,7 @@ class Formula(Generic[Arguments]):
         """Return the value, and warn where it is outside the range or missing; refuse another law than the exponential one."""
         if not isinstance(groups, Groups):
             raise InputError(f"groups = {show(groups)}; give Groups(speed, load, roughness), or contact.groups.")
-        self.check_geometry(groups)
-        self.check_law(groups)
+        self.check(groups)
         call = self._signature.bind(groups, *args, **kwargs)
         for name, value in call.arguments.items():
             if name in ("boundary_friction", "beta"):
@@ -269,8 +234,8 @@ class Formula(Generic[Arguments]):
     def _signature(self) -> inspect.Signature:
         return inspect.signature(self.function)
 
-    def check_geometry(self, groups: Groups) -> None:
-        """Refuse groups of the other geometry, cylinder or ball, and of another fluid, cavitation, body or motion.
+    def check(self, groups: Groups) -> None:
+        """Refuse groups of the other geometry, of another model than the article's, and of a law for which it was not derived.
 
         Parameters
         ----------
@@ -280,7 +245,7 @@ class Formula(Generic[Arguments]):
         Raises
         ------
         InputError
-            If they are of the other geometry, or their model is not that of the article.
+            If the formula is not about such states.
         """
         if groups.geometry != self.geometry:
             bodies = {"line": "a cylinder", "point": "a ball"}
@@ -293,20 +258,6 @@ class Formula(Generic[Arguments]):
                 f"{self.name} holds for a Newtonian fluid that does not cavitate, on a half-space, and these groups have "
                 f"another model ({model_words(groups, None)}); use solve."
             )
-
-    def check_law(self, groups: Groups) -> None:
-        """Refuse a contact law for which the formula was not derived; smooth contacts have none.
-
-        Parameters
-        ----------
-        groups : Groups
-            States.
-
-        Raises
-        ------
-        InputError
-            If the law is not the exponential one.
-        """
         if groups.law is not None and not self.holds_for(groups.law):
             raise InputError(f"{self.name} holds for the exponential contact law, not for {groups.law.name}; use solve.")
 

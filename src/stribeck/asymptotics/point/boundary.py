@@ -20,6 +20,7 @@ from typing import Literal
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Limit, OutOfRangeWarning, Value, fluid_number, formula
 from stribeck.asymptotics.point.logarithm import far_integral
 from stribeck.asymptotics.point.rest import CATALAN
@@ -65,6 +66,12 @@ def phi_of(A: Array, form: PhiForm = "quadrature") -> Array:
     return np.asarray(HEAVY_LIMIT * (a * a * (a * (a + b1) + b2) / (a * (a * (a + a1) + a2) + a3)) ** 3)
 
 
+@described(
+    "phi [-], of the shape of ``load``; nan, with a warning, from load 1 on.",
+    raises="If a load is no positive finite number, or the form is unknown.",
+    source="ours",
+    form="The integral, or the closed form.",
+)
 def phi(load: Value, form: PhiForm = "quadrature") -> Value:
     r"""Return the auxiliary function of the fluid's load on a ball, F_f/F_N = lambda**2/kappa**4 phi.
 
@@ -74,30 +81,11 @@ def phi(load: Value, form: PhiForm = "quadrature") -> Value:
         \phi_\mathrm{closed} &= \frac{2}{125 A^3} \left[\frac{1 + b_1 A + b_2 A^2}{1 + a_1 A + a_2 A^2 + a_3 A^3}\right]^3,
         \quad A = -\tfrac13 \ln \bar F_N
 
-    Parameters
-    ----------
-    load : float or array_like
-        Load group [-], between 0 and 1.
-    form : {"quadrature", "closed"}
-        The integral, or the closed form.
-
-    Returns
-    -------
-    float or ndarray
-        phi [-], of the shape of ``load``; nan, with a warning, from load 1 on.
-
-    Raises
-    ------
-    InputError
-        If a load is no positive finite number, or the form is unknown.
-
     Notes
     -----
     The quadrature is good to 1e-11.  The closed form is within 0.25 % of it for loads 1e-300 to 0.997; it has both limits,
     :math:`\tfrac{2}{125} A^{-3}` as F -> 1, where the gap closes in the middle, and :math:`\tfrac1{24} A^{-6}` as F ->
     0, reached so slowly that this is 31 % too high at load 1e-30.
-
-    Source: this module.
     """
     values = Groups(0.0, load, 0.0, geometry="point").load
     if np.any(np.greater_equal(values, 1)):

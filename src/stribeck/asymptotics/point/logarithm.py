@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Value
 from stribeck.contacts.cut_off import COUETTE, POISEUILLE, log_cut_offs
 from stribeck.quantities.arrays import real_array
@@ -18,27 +19,13 @@ from stribeck.quantities.units import InputError, show
 LOGARITHM_COEFFICIENT = COUETTE + POISEUILLE  # Coefficient of lambda ln X, 16 pi/15.
 
 
+@described(
+    "The integral over lambda [-].", kind="ndarray", raises="If a wetted radius lies inside the contact, at 1 or below."
+)
 def far_integral(slope: Value, wetted_radius: Value | None = None) -> Array:
     r"""Return the contribution of the liquid around the contact to the friction integral, over the speed group.
 
     .. math:: \tfrac{16}{15} \pi \ln X
-
-    Parameters
-    ----------
-    slope : float or array_like
-        a/R [-].
-    wetted_radius : float or array_like, optional
-        Where the liquid ends, X [a]; by default that of a whole ball in liquid without bounds, 5.034 R/a.
-
-    Returns
-    -------
-    ndarray
-        The integral over lambda [-].
-
-    Raises
-    ------
-    InputError
-        If a wetted radius lies inside the contact, at 1 or below.
     """
     if wetted_radius is None:
         by_shear, by_pressure = log_cut_offs(1.0)

@@ -26,6 +26,7 @@ from functools import cache
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.point.boundary import SHARE_EDGE_COEFFICIENTS, phi_of
 from stribeck.asymptotics.point.film import film_of
@@ -71,27 +72,11 @@ def contact_load_share(groups: Groups) -> Value:
     return np.exp(-np.logaddexp(0.0, log_odds(groups)))[()]
 
 
+@described("Speed group [-]; nan from load 1 on, without roughness, and at relative roughness above 100.")
 def speed_of_share(groups: Groups, share: Value = 0.5) -> Value:
     r"""Return the speed at which the fluid carries a given part of the load of a ball.
 
     .. math:: \lambda = \left(\lambda_w^{-m} + \lambda_f^{-m}\right)^{-1/m}
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``load`` and ``roughness`` [-]; arrays broadcast.
-    share : float or array_like
-        Part of the load on the fluid [-], between 0 and 1.
-
-    Returns
-    -------
-    float or ndarray
-        Speed group [-]; nan from load 1 on, without roughness, and at relative roughness above 100.
-
-    Raises
-    ------
-    InputError
-        If the share is not between 0 and 1.
     """
     wanted = real_array("share", share)
     if not ((wanted > 0) & (wanted < 1)).all():

@@ -23,6 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stribeck.asymptotics.constants import FILM_CONSTANT
+from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Value
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.units import InputError, show
@@ -74,64 +75,42 @@ class SmoothFilm(NamedTuple):
     exit: Value
 
 
+@described(
+    "Central and minimum gap and exit.",
+    kind="SmoothFilm",
+    raises="If the speed is no such number.",
+    source="ours; theory.md, section 12",
+)
 def slow_film_with_free_exit(speed: Value) -> SmoothFilm:
     r"""Return the limit of slow smooth films: that of the full film with its own outlet.
 
     .. math:: h(0) = c \lambda^{3/5}, \quad h_\mathrm{min} = 0.7962 \, h(0), \quad x_c = 1 + 0.16406 \, \lambda^{2/5}
 
-    Parameters
-    ----------
-    speed : float or ndarray
-        Speed group :math:`\lambda`, zero or positive [-].
-
-    Returns
-    -------
-    SmoothFilm
-        Central and minimum gap and exit.
-
-    Raises
-    ------
-    InputError
-        If the speed is no such number.
-
     Notes
     -----
     c = 0.44583 is that of the full film, as the inlet makes it.  Of solved states the central gap is higher by 0.25 % at speed
     1e-5, 1.6 % at 1e-3 and 4 % at 0.01, the way of the exit shorter by 2, 10 and 22 % (``test_free_exit_law.py``).
-
-    Source: ours; theory.md, section 12.
     """
     speed = _speed(speed)
     central = FILM_CONSTANT * speed**0.6
     return SmoothFilm(central, MINIMUM_OVER_CENTRAL * central, 1 + EXIT_SLOPE * speed**0.4)
 
 
+@described(
+    "Central and minimum gap and exit.",
+    kind="SmoothFilm",
+    raises="If the speed is no such number.",
+    source="textbooks of lubrication, as Reynolds' condition under a parabola",
+)
 def rigid_film_with_free_exit(speed: Value) -> SmoothFilm:
     r"""Return the limit of fast smooth films: that of a rigid parabola.
 
     .. math:: h(0) = h_\mathrm{min} = \frac{2.44748}{3 \pi} \lambda, \quad x_c = 0.47513 \, [2 h(0)]^{1/2}
 
-    Parameters
-    ----------
-    speed : float or ndarray
-        Speed group :math:`\lambda`, zero or positive [-].
-
-    Returns
-    -------
-    SmoothFilm
-        Central and minimum gap and exit.
-
-    Raises
-    ------
-    InputError
-        If the speed is no such number.
-
     Notes
     -----
     The flux gap is :math:`1.22575 \, h(0)`.  Of solved states gaps are higher by 1.1 % at speed 100 and by 0.11 % at 1000, and
     the exit lies farther out by 3 and 0.3 % (``test_free_exit_law.py``).
-
-    Source: textbooks of lubrication, as Reynolds' condition under a parabola.
     """
     central = RIGID_LOAD / (3 * math.pi) * _speed(speed)
     return SmoothFilm(central, central, RIGID_EXIT * np.sqrt(2 * central))
@@ -144,25 +123,16 @@ def _speed(value: Value) -> Value:
     return speed[()]
 
 
+@described(
+    "Exit, flux gap and share.",
+    kind="FreeExit",
+    raises="If the load group is out of range: from one on asperities cannot carry the load at a positive gap.",
+    load="Load group, from 1e-8 to 0.9 [-].",
+)
 def boundary_film_with_free_exit(load: float) -> FreeExit:
     r"""Return the first order of a film with a free exit in boundary lubrication.
 
     .. math:: \varphi_1 = \frac2\pi \int_{-1}^{x_c} (x_c - x) \, \frac{H - H^*}{H^3} \, dx
-
-    Parameters
-    ----------
-    load : float
-        Load group :math:`\bar F_N`, from 1e-8 to 0.9 [-].
-
-    Returns
-    -------
-    FreeExit
-        Exit, flux gap and share.
-
-    Raises
-    ------
-    InputError
-        If the load group is out of range: from one on asperities cannot carry the load at a positive gap.
 
     Notes
     -----

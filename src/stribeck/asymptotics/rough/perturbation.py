@@ -24,6 +24,7 @@ from typing import Literal
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Limit, OutOfRangeWarning, Value, fluid_number, formula
 from stribeck.asymptotics.rough.slow_contact import half_logarithm, of_load, outward
 from stribeck.contacts.groups import Groups
@@ -59,6 +60,12 @@ def phi_of(load: Value, form: PhiForm = "quadrature") -> Value:
     raise InputError(f"form = {show(form)}; it must be 'quadrature', 'closed', 'asymptote', 'power' or 'printed'.")
 
 
+@described(
+    "phi [-], of the shape of ``load``; nan, with a warning, from load 1 on.",
+    raises="If a load is no positive finite number, or the form is unknown.",
+    source="[BP] Eq. (fluid-normal-dl) and Appendix D",
+    form="The integral; closed form; its limit :math:`(96 - 128 \\ln 2)/L^6`; :math:`0.325/L^5`; the printed :math:`L^5/2`.",
+)
 def phi(load: Value, form: PhiForm = "quadrature") -> Value:
     r"""Return the auxiliary function of the fluid's load, F_f/F_N = lambda**2/kappa**4 phi.
 
@@ -68,33 +75,14 @@ def phi(load: Value, form: PhiForm = "quadrature") -> Value:
         \phi_\mathrm{closed} &= \frac{2}{3 L^{7/2}}
         \left[\frac{1 + b_1 L + b_2 L^2}{1 + a_1 L + a_2 L^2 + a_3 L^3}\right]^{5/2}, \quad L = -\ln \bar F_N
 
-    Parameters
-    ----------
-    load : float or array_like
-        Load group [-], between 0 and 1.
-    form : {"quadrature", "closed", "asymptote", "power", "printed"}
-        The integral; the closed form; its limit :math:`(96 - 128 \ln 2)/L^6`; :math:`0.325/L^5`; the printed
-        :math:`L^5/2`.
-
-    Returns
-    -------
-    float or ndarray
-        phi [-], of the shape of ``load``; nan, with a warning, from load 1 on.
-
-    Raises
-    ------
-    InputError
-        If a load is no positive finite number, or the form is unknown.
-
     Notes
     -----
     The quadrature is good to 1e-12 for loads 1e-300 to 0.999999.  The closed form is within 0.33 % of it for all these; it has
     both limits, :math:`\tfrac23 L^{-7/2}` as F -> 1, where phi diverges as the gap closes at x = 0, and the asymptote as
     F -> 0.  That is reached so slowly that it is 2.5 times too high at load 1e-4, by 45 % at 1e-12 and by 1.7 % at 1e-300.
-    The power is within 12 % for loads 1e-5 to 1e-1, and 78 % too high at 1e-12.
+    The power is within 12 % for loads 1e-5 to 1e-1, and 78 % too high at 1e-12.  Closed form and limits are ours.
 
-    Source: [BP] Eq. (fluid-normal-dl) and Appendix D, where 2/pi is missing; Eq. (phi_approximation) prints the power with a
-    positive exponent.  Closed form and limits are ours.
+    [BP] lack 2/pi, and print the power with a positive exponent in Eq. (phi_approximation).
     """
     # Groups know what a load is.
     values = Groups(0.0, load, 0.0).load
@@ -104,46 +92,23 @@ def phi(load: Value, form: PhiForm = "quadrature") -> Value:
     return phi_of(values, form)
 
 
+@described("M [-], of the shape of ``load``; nan from load 1 on.", source="theory.md, section 6, with [BP] Appendix D")
 def pressure_moment(load: Value) -> Value:
     r"""Return the moment of the fluid pressure of first order, equal and opposite to that of the contact pressure.
 
     .. math:: M = -\int_{-1}^1 x \, P_{f,1} \, dx = \int_0^1 x^2 \, \frac{H_0 - H_0^*}{H_0^3} \, dx
-
-    Parameters
-    ----------
-    load : float or array_like
-        Load group [-], > 0.
-
-    Returns
-    -------
-    float or ndarray
-        M [-], of the shape of ``load``; nan from load 1 on.
-
-    Notes
-    -----
-    Source: theory.md, section 6, with [BP] Appendix D.
     """
     return of_load(load, lambda c: c.integral(c.x**2 * c.first()))
 
 
+@described(
+    "S [-], of the shape of ``load``; nan from load 1 on.",
+    source="theory.md, section 6, with the gap of [BP] Eq. (central_region_contact)",
+)
 def shear(load: Value) -> Value:
     r"""Return the shear stress on the substrate, integrated.
 
     .. math:: S = \int_{-1}^1 \frac{1}{H_0} \left[1 + 3 \frac{H_0 - H_0^*}{H_0}\right] dx
-
-    Parameters
-    ----------
-    load : float or array_like
-        Load group [-], > 0.
-
-    Returns
-    -------
-    float or ndarray
-        S [-], of the shape of ``load``; nan from load 1 on.
-
-    Notes
-    -----
-    Source: theory.md, section 6, with the gap of [BP] Eq. (central_region_contact).
     """
     return of_load(load, lambda c: 2 * c.integral(1 / c.H + 3 * c.first(2)))
 

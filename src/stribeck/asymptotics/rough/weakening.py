@@ -16,6 +16,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.asymptotics.constants import FILM_CONSTANT, PRINTED_FILM_CONSTANT
+from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Value, coefficient
 from stribeck.asymptotics.rough import mixed
 from stribeck.asymptotics.rough.mixed import lambert_w
@@ -42,30 +43,11 @@ DIFFERENCE_STEP = 1e-4  # Step of the differences in ln(speed).
 ROUGHNESS_RANGE = (1e-7, 1e3)  # Relative roughness between which the merging of the uniform law is sought.
 
 
+@described("k [-].", source="[BP] Eq. (Lambda_solution)", printed="Whether with the constant 0.44 as printed.")
 def weakening_number(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, *, printed: bool = False) -> Value:
     r"""Return the number on which the minimum of friction depends in the limit of small roughness.
 
     .. math:: k = \frac{2}{9 c^{5/3}} \frac{\beta \bar h_\mathrm{rms}^{2/3} \bar F_N^{1/3}}{\mu_0}
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``load`` and ``roughness`` [-]; arrays broadcast.
-    boundary_friction : float
-        Friction coefficient of the dry contact [-].
-    beta : float
-        Coefficient of the contact law [-].
-    printed : bool
-        Whether with the constant 0.44 as printed.
-
-    Returns
-    -------
-    float or ndarray
-        k [-].
-
-    Notes
-    -----
-    Source: [BP] Eq. (Lambda_solution).
     """
     boundary_friction, beta = coefficient("boundary_friction", boundary_friction), coefficient("beta", beta)
     c = PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT
@@ -75,38 +57,20 @@ def weakening_number(groups: Groups, boundary_friction: float = 1.0, beta: float
     return number
 
 
+@described(
+    "Of the shape of load and roughness.",
+    kind="ndarray of bool",
+    source="[BP] Eq. (Lambda_solution), whose condition is not stated there",
+    form='By which friction: ``"uniform"`` by :func:`.rough.mixed.friction`, the others by that of [BP], as above.',
+)
 def has_minimum(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, form: Form = "uniform") -> Flags:
     r"""Return whether friction has a minimum over the speed.
 
     .. math:: k < (3e)^{-1/3} = 0.4968
 
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``load`` and ``roughness`` [-]; arrays broadcast.
-    boundary_friction : float
-        Friction coefficient of the dry contact [-].
-    beta : float
-        Coefficient of the contact law [-].
-    form : {"uniform", "exact", "expansion", "leading"}
-        By which friction: ``"uniform"`` by :func:`stribeck.asymptotics.rough.mixed.friction`,
-        the others by that of [BP], as above.
-
-    Returns
-    -------
-    ndarray of bool
-        Of the shape of load and roughness.
-
-    Raises
-    ------
-    InputError
-        If ``form`` is none of the four.
-
     Notes
     -----
     The condition on k is necessary and far from sufficient, see :func:`roughness_without_minimum`.
-
-    Source: [BP] Eq. (Lambda_solution), whose condition is not stated there.
     """
     boundary_friction, beta = coefficient("boundary_friction", boundary_friction), coefficient("beta", beta)
     if checked_form(form) == "uniform":
@@ -114,6 +78,12 @@ def has_minimum(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.
     return np.asarray(weakening_number(groups, boundary_friction, beta) < MAX_WEAKENING)
 
 
+@described(
+    "Roughness group [-]; nan where the criterion is never met.",
+    raises="If ``criterion`` is none of the four, or a load is no positive number.",
+    source="[BP] Conclusion, in words; formulas ours",
+    load="Load group [-].",
+)
 def roughness_without_minimum(
     load: Value, boundary_friction: float = 1.0, beta: float = 1.0, criterion: Criterion = "uniform"
 ) -> Value:
@@ -142,16 +112,6 @@ def roughness_without_minimum(
         ``speed_boundary_to_mixed`` and ``speed_at_minimum`` (exact), meet, what its Conclusion means by merging.
         ``"weakening"``: the minimum of [BP]'s friction disappears, k = 0.4968.
 
-    Returns
-    -------
-    float or ndarray
-        Roughness group [-]; nan where the criterion is never met.
-
-    Raises
-    ------
-    InputError
-        If ``criterion`` is none of the four, or a load is no positive number.
-
     Notes
     -----
     Relative roughness of the merging with mu0 = beta = 1:
@@ -171,8 +131,6 @@ def roughness_without_minimum(
 
     The solver's are :func:`stribeck.regimes.weakening.roughness_without_minimum`.
     The last three assume small relative roughness and are asked where it is not small.
-
-    Source: [BP] Conclusion, in words; formulas ours.
     """
     if criterion not in get_args(Criterion):
         raise InputError(f"criterion = {show(criterion)}; it must be 'uniform', 'plateau', 'lines' or 'weakening'.")

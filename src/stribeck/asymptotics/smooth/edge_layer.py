@@ -82,8 +82,8 @@ def gap(groups: Groups, x: Value, printed: bool = False) -> Value:
 
     Notes
     -----
-    Within 5 widths of the edge the error is below 2.5 % of the largest gap there for kappa up to 0.01 and falls as
-    kappa**(2/3); as printed it is below 8 % and falls as kappa**(1/3) only.  H(0) is :data:`.constants.EDGE_GAP`.
+    Compared with the solver within 5 widths of the edge; as printed the error is 8 % and falls as kappa**(1/3) only.
+    H(0) is :data:`.constants.EDGE_GAP`.
     """
     kappa = groups.relative_roughness
     H = layer().gap(_coordinate(groups, x, printed))
@@ -103,8 +103,7 @@ def contact_pressure(groups: Groups, x: Value, printed: bool = False) -> Value:
 
     Notes
     -----
-    Within 5 widths of the edge the error is below 7 % of the largest pressure there for kappa up to 0.01 and falls as
-    kappa**(2/3); as printed it is below 9 % and falls as kappa**(1/3) only.
+    Compared with the solver within 5 widths of the edge; as printed the error is 9 % and falls as kappa**(1/3) only.
     """
     kappa = groups.relative_roughness
     return kappa ** (1 / 3) * np.exp(-layer().gap(_coordinate(groups, x, printed)))

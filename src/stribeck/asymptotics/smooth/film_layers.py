@@ -72,9 +72,7 @@ def gap_inlet(groups: Groups, x: Value) -> Value:
 
     Notes
     -----
-    Within 5 widths lambda**(2/5) of the edge the error is below 4 % of the largest gap there for speeds up to 0.001 and
-    falls as lambda**(2/5).  Inside, H tends
-    to :data:`.constants.FILM_CONSTANT`.
+    Compared with the solver within 5 widths lambda**(2/5) of the edge.  Inside, H tends to :data:`.constants.FILM_CONSTANT`.
     """
     return groups.speed**0.6 * inlet().gap(np.divide(np.subtract(-1.0, x), groups.speed**0.4))
 
@@ -87,8 +85,7 @@ def gap_outlet(groups: Groups, x: Value) -> Value:
 
     Notes
     -----
-    Within 5 widths lambda**(2/5) of the edge the error is below 5.5 % of the largest gap there for speeds up to 0.001 and
-    falls as lambda**(2/5).  The minimum gap is
+    Compared with the solver within 5 widths lambda**(2/5) of the edge.  The minimum gap is
     :data:`.constants.MINIMUM_CONSTANT` lambda**(3/5), at x = 1 + :data:`.constants.MINIMUM_POSITION` lambda**(2/5).
     """
     return groups.speed**0.6 * outlet().gap(np.divide(np.subtract(x, 1.0), groups.speed**0.4))
@@ -102,8 +99,7 @@ def fluid_pressure_inlet(groups: Groups, x: Value) -> Value:
 
     Notes
     -----
-    Within 5 widths lambda**(2/5) of the edge the error is below 9 % of the largest pressure there for speeds up to 0.001 and
-    falls as lambda**(2/5).
+    Compared with the solver within 5 widths lambda**(2/5) of the edge.
     """
     return groups.speed**0.2 * inlet().pressure(np.divide(np.subtract(-1.0, x), groups.speed**0.4))
 
@@ -116,8 +112,7 @@ def fluid_pressure_outlet(groups: Groups, x: Value) -> Value:
 
     Notes
     -----
-    Within 5 widths lambda**(2/5) of the edge the error is below 9.5 % of the largest pressure there for speeds up to 0.001 and
-    falls as lambda**(2/5).
+    Compared with the solver within 5 widths lambda**(2/5) of the edge.
     """
     return groups.speed**0.2 * outlet().pressure(np.divide(np.subtract(x, 1.0), groups.speed**0.4))
 

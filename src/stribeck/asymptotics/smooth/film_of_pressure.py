@@ -21,7 +21,7 @@ import math
 import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
@@ -51,18 +51,18 @@ MAX_EDGE_ZONE = 0.5  # Largest part of the way to the peak that this zone takes.
 MAX_RESOLUTION_ERROR = 0.25  # Largest relative error of a film that a table may leave.
 
 
+INLET_NUMBERS = (
+    "edge",
+    "edge_coefficient",
+    "edge_coefficient_error",
+    "steepest_rise",
+    "steepest_rise_error",
+    "inlet_length",
+)  # What a dataset holds of an inlet
 NUMBERS = {
     "forward": "gap at the highest pressure as the surface goes towards larger x",
     "backward": "gap at the highest pressure as the surface goes towards smaller x",
     "net": "what a stroke to and fro leaves, per length of the stroke and of the seal",
-}
-INLET_NUMBERS = {
-    "edge": ("m", "where the contact begins"),
-    "edge_coefficient": ("Pa m-1/2", "pressure over the root of the distance from the edge"),
-    "edge_coefficient_error": ("Pa m-1/2", "estimated absolute error of edge_coefficient"),
-    "steepest_rise": ("Pa m-1", "steepest rise of the pressure inside the contact"),
-    "steepest_rise_error": ("Pa m-1", "estimated absolute error of steepest_rise"),
-    "inlet_length": ("m", "length over which the edge makes the film"),
 }
 
 
@@ -76,56 +76,23 @@ class Films(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Inlet(ByValue, Shown):
-    """One direction: what of the pressure makes the film, and how well the table tells it.
+    """One direction: what of the pressure makes the film, and how well the table tells it."""
 
-    Attributes
-    ----------
-    film : float
-        h* [m].
-    error : float
-        Its relative error, of the law and of the table [-].
-    law_error, resolution_error : float
-        The parts of this error [-].
-    law : str
-        What governs: ``"edge"``, ``"interior"``, or ``"edge and interior"`` where both are nearly equal.
-    edge : float
-        Where the contact begins [m].
-    edge_coefficient, edge_coefficient_error : float
-        k, and its absolute error [Pa/m^(1/2)].
-    steepest_rise, steepest_rise_error : float
-        p'max, and its absolute error [Pa/m]; zero where the pressure does not rise beyond the edge.
-    inlet_length : float
-        The length over which the edge makes the film [m].
-    spacing : float
-        Step of the table at the edge [m].
-    """
+    film: Annotated[float, "h*", "m"]
+    error: Annotated[float, "its relative error, of the law and of the table"]
+    law_error: Annotated[float, "the part of the law in this error"]
+    resolution_error: Annotated[float, "the part of the table in this error"]
+    law: Annotated[str, "what governs: ``edge``, ``interior``, or ``edge and interior`` where both are nearly equal"]
+    edge: Annotated[float, "where the contact begins", "m"]
+    edge_coefficient: Annotated[float, "pressure over the root of the distance from the edge", "Pa m-1/2"]
+    edge_coefficient_error: Annotated[float, "estimated absolute error of edge_coefficient", "Pa m-1/2"]
+    steepest_rise: Annotated[float, "steepest rise of the pressure inside the contact, zero if there is none", "Pa m-1"]
+    steepest_rise_error: Annotated[float, "estimated absolute error of steepest_rise", "Pa m-1"]
+    inlet_length: Annotated[float, "length over which the edge makes the film", "m"]
+    spacing: Annotated[float, "step of the table at the edge", "m"]
 
-    film: float
-    error: float
-    law_error: float
-    resolution_error: float
-    law: str
-    edge: float
-    edge_coefficient: float
-    edge_coefficient_error: float
-    steepest_rise: float
-    steepest_rise_error: float
-    inlet_length: float
-    spacing: float
-
-    def scaled(self, L: float, P: float) -> Inlet:
-        """Return the inlet in other units of length and pressure.
-
-        Parameters
-        ----------
-        L, P : float
-            The present units in the new ones.
-
-        Returns
-        -------
-        Inlet
-            The same inlet.
-        """
+    def _scaled(self, L: float, P: float) -> Inlet:
+        """Return the inlet in other units, in which the present ones of length and pressure are L and P."""
         lengths = {name: getattr(self, name) * L for name in ("film", "edge", "inlet_length", "spacing")}
         roots = {name: getattr(self, name) * P / L**0.5 for name in ("edge_coefficient", "edge_coefficient_error")}
         rises = {name: getattr(self, name) * P / L for name in ("steepest_rise", "steepest_rise_error")}
@@ -134,34 +101,27 @@ class Inlet(ByValue, Shown):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PressureFilm(ByValue, Told, Tabled):
-    """Films of both directions and what a stroke leaves outside.
+    """Films of both directions and what a stroke leaves outside."""
 
-    Attributes
-    ----------
-    forward, backward : float
-        h*, the gap at the highest pressure, as the moving surface goes towards larger and smaller x [m].
-    net : float
-        (forward - backward)/2: what a stroke to and fro leaves on the far side, per length of the stroke and of the seal
-        [m].  A gap h* lets pass the flux U h*/2.  Where it is negative, the way back could return more than came out.
-    error : Films
-        Absolute errors of the three [m].
-    inlets : tuple of Inlet
-        Both directions, forward first.
-    """
-
-    forward: float
-    backward: float
-    net: float
-    error: Films
-    inlets: tuple[Inlet, Inlet]
+    forward: Annotated[float, "gap at the highest pressure as the surface goes towards larger x", "m"]
+    backward: Annotated[float, "gap at the highest pressure as the surface goes towards smaller x", "m"]
+    net: Annotated[
+        float,
+        "(forward - backward)/2, what a stroke to and fro leaves per length of the stroke and of the seal; a gap h* lets pass "
+        "the flux U h*/2, and where net is negative, the way back could return more than came out",
+        "m",
+    ]
+    error: Annotated[Films, "absolute errors of the three", "m"]
+    inlets: Annotated[tuple[Inlet, Inlet], "both directions, forward first"]
 
     def _labelled(self) -> Labelled:
         columns: dict[str, Column] = {}
         for name, meaning in NUMBERS.items():
             columns[name] = ((), getattr(self, name), "m", meaning)
             columns[f"{name}_error"] = ((), getattr(self.error, name), "m", f"estimated absolute error of {name}")
-        for name, (unit, meaning) in INLET_NUMBERS.items():
-            columns[name] = ("direction", [getattr(each, name) for each in self.inlets], unit, meaning)
+        for name in INLET_NUMBERS:
+            words = Inlet._words[name]
+            columns[name] = ("direction", [getattr(each, name) for each in self.inlets], str(words.unit), words.meaning)
         directions = {"direction": ("direction", ["forward", "backward"], "1", "direction in which the surface moves")}
         return columns, directions, {"title": "Film of a dry pressure", "notes": "\n".join(self.notes)}
 
@@ -284,7 +244,7 @@ def film_of_pressure(
     tables = (xs / L, ps / P, "left"), (-xs[::-1] / L, ps[::-1] / P, "right")
     drags = (eta / P * U / L for U in speeds)
     forward, backward = (
-        _inlet(DryPressure.of(*each), E / P, drag).scaled(L, P) for each, drag in zip(tables, drags, strict=True)
+        _inlet(DryPressure.of(*each), E / P, drag)._scaled(L, P) for each, drag in zip(tables, drags, strict=True)
     )
     there, back = forward.film * forward.error, backward.film * backward.error
     net = (forward.film - backward.film) / 2
