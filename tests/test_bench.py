@@ -2,6 +2,7 @@
 
 import datetime
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -203,7 +204,7 @@ def test_errors_that_a_file_gives_are_those_of_its_points(written):
 
 
 REFUSED = {
-    "08_torque_instead_of_force.csv": "arm = '20 mm' in [fit]",
+    "08_torque_instead_of_force.csv": "arm = '20 mm' in [bench]",
     "09_hersey_number_ball.csv": "a series needs a column of speed",
     "11_digitizer_pairs_of_columns.csv": "as in speed = 'X' and friction = 'Y'",
     "14_log_speed.csv": "is a logarithm, which is no speed",
@@ -232,6 +233,9 @@ def test_what_is_no_series_is_refused_with_what_to_do(subtests, written):
     for name, (content, sentence) in bad.items():
         with subtests.test(name=name):
             assert sentence in refusal(written(content))
+    assert "none called 'Kraft', which [bench.columns] has as friction_force" in refusal(
+        EXAMPLE, sb.FitSettings(columns={"friction_force": "Kraft"})
+    )
     assert "cannot be read" in refusal("there_is_none.csv")
     assert "per_decade" in refusal(EXAMPLE, per_decade=0)
 
@@ -332,17 +336,57 @@ def test_a_ramp_of_a_rheometer_with_a_torque_and_a_rotation(written):
     assert len(sb.bench.read(path, sb.FitSettings(track_radius=0.02, arm=0.02), per_decade=4)) == 10
 
 
-def test_arm_and_track_radius_of_a_call_are_those_of_a_case(written, subtests, tmp_path, capsys):
+RIG = """
+[bench]
+arm = "20 mm"
+track_radius = "20 mm"
+per_decade = 4
+fluid = "iso-vg grade=46"
+temperature = "40 degC"
+name = "{fluid}_{run}.csv"
+columns = {speed = "Drehzahl", friction_force = "Kraft"}
+units = {speed = "mm/s", friction_force = "N"}
+run_in = "keep"
+"""
+
+
+def test_the_table_bench_has_what_the_command_takes_as_options(written, tmp_path, capsys):
     rows = stepped(np.random.default_rng(3), speeds=SPEEDS[::2], amplitude=0.005) * [1, 60 / (2 * np.pi * 20), 1, 20]
-    path = written(text_of(rows, "Time [s];Speed [rpm];Fz [N];Torque [mN m]"))
-    expected = sb.bench.read(path, sb.FitSettings(track_radius=0.02, arm=0.02))
-    found = sb.bench.read(path, arm="20 mm", track_radius=0.02)
-    assert np.array_equal(found.speed, expected.speed) and np.array_equal(found.friction, expected.friction)
-    answer = call(capsys, "bench", path, "--arm", "20 mm", "--track-radius", "20 mm", "-o", tmp_path / "curve.csv")
-    assert answer.code == 0, answer.err
-    for options, words in (({"arm": "20 N"}, "arm"), ({"arm": 0.0, "track_radius": 1.0}, "arm = 0.0 must be a length above")):
+    path = written(text_of(rows, "Time [s];Speed [rpm];Fz [N];Torque [mN m]"), "oil_1.csv")
+    rig = written('[bench]\narm = "20 mm"\ntrack_radius = "20 mm"\n', "rig.toml")
+    expected = sb.bench.read(path, arm="20 mm", track_radius=0.02)
+    assert sb.bench.read(path, rig) == expected
+    assert sb.bench.read(path, sb.FitSettings(track_radius=0.02, arm=0.02)) == expected
+    assert sb.bench.read(path, rig, arm="40 mm").friction == pytest.approx(expected.friction / 2, rel=1e-3)  # a call wins
+    case = written(case_text(fit={"arm": '"40 mm"', "track_radius": '"10 mm"'}) + "\n" + rig.read_text(), "case.toml")
+    assert sb.bench.read(path, sb.load_case(case)).friction == pytest.approx(expected.friction)  # and [bench] more than [fit]
+    assert sb.bench.read(path, sb.load_case(case).fit).speed == pytest.approx(expected.speed / 2)
+    assert call(capsys, "bench", path, "--case", rig, "-o", tmp_path / "a.csv").code == 0
+    options = ("--arm", "20 mm", "--track-radius", "20 mm", "-o", tmp_path / "b.csv")
+    assert call(capsys, "bench", path, *options).code == 0
+    assert (tmp_path / "a.csv").read_text() == (tmp_path / "b.csv").read_text()
+    plain = written(
+        text_of(rows / [1, 60 / (2 * np.pi * 20), 1, 20], "Zeit;Drehzahl;Fz [N];Kraft").replace(".", ","), "x_1.csv"
+    )
+    found = sb.bench.read(plain, written(RIG, "all.toml"))
+    assert found.curves == ("x",) and np.all(found.viscosity == sb.fluids.iso_vg(46, temperature=40).viscosity)
+
+
+def test_a_wrong_entry_of_the_table_bench_is_refused_with_its_place(written, subtests):
+    for text, words in (
+        ('arm = "20 N"', "[bench] arm = '20 N' is a force"),
+        ("arm = 0", "[bench] arm = 0 must be positive"),
+        ("per_decade = 0", "[bench] per_decade = 0 must be between 1 and 1000"),
+        ('fluid = "iso-vg grad=46"', "[bench] grad is no condition"),
+        ('name = "{lode}N.csv"', "[bench] lode"),
+        ('columns = {sped = "v"}', "[bench.columns] sped"),
+        ("free = []", "[bench] free = [] is not a known key"),
+    ):
         with subtests.test(words=words):
-            assert words in refusal(path, **options)
+            path = written(f"[bench]\n{text}\n", "rig.toml")
+            assert f"{path}: {words}" in refusal(EXAMPLE, path)
+            with pytest.raises(sb.InputError, match=re.escape(words)):
+                sb.load_case(written(case_text() + "\n" + path.read_text(), "case.toml"))
 
 
 def test_the_time_of_day_is_a_time_over_midnight_too(written, subtests):

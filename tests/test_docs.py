@@ -59,6 +59,8 @@ def test_a_toml_block_is_a_case_or_sweep_file(code, desk):
     Path("case.toml").write_text(code)
     if "[vary]" in code:
         assert len(sb.load_sweep("case.toml")) > 1
+    elif code.startswith("[bench]"):
+        assert len(sb.bench.read("examples/rig_raw.csv", "case.toml", name="{fluid}")) > 1
     else:
         assert sb.load_case("case.toml").contact.groups.load > 0
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -15,17 +14,18 @@ from stribeck.bench.points import Point, points_of, run_in_of
 from stribeck.bench.raw import Raw, read_raw
 from stribeck.bench.result import BenchCurve
 from stribeck.bench.segments import directions
-from stribeck.cases.fit_settings import FitSettings, read_pattern
+from stribeck.cases.bench_settings import with_options
+from stribeck.cases.case import Case
+from stribeck.cases.fit_settings import FitSettings
+from stribeck.cases.reading import load_rig
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.fits.reading import files_of
 from stribeck.fluids.presets import PRESETS, Preset
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.keywords import answers_typos
-from stribeck.quantities.units import InputError, checked_kind, checked_word, show, to_si
+from stribeck.quantities.units import InputError, checked_kind
 
 __all__ = ["read"]
-
-PER_DECADE = 10  # Bins for a decade of a speed that never rests: friction is nearly straight within a factor of 1.26
 
 OnFile = Callable[[int, int], Any]  # Called with the number of files read and of all
 
@@ -50,12 +50,12 @@ class _Curves:
 @answers_typos
 def read(
     runs: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
-    settings: FitSettings | None = None,
+    settings: str | os.PathLike[str] | Case | FitSettings | None = None,
     *,
     name: str | None = None,
     fluid: str | Mapping[str, Any] | None = None,
     temperature: str | float | None = None,
-    per_decade: float = PER_DECADE,
+    per_decade: float | None = None,
     arm: str | float | None = None,
     track_radius: str | float | None = None,
     on_file: OnFile | None = None,
@@ -66,23 +66,23 @@ def read(
     ----------
     runs : str, path-like or list of them
         Files of a tribometer or a rheometer, or globs: columns of speed (or rotation) and friction (or forces, or torque).
-    settings : FitSettings, optional
-        The ``[fit]`` table of a case: columns in another language, units that no header gives, radius of the track, arm, and
-        what files have for themselves (``file_names``, ``files``).
+    settings : path-like, Case or FitSettings, optional
+        A case, or a file with its table ``[bench]`` alone: columns in another language, units that no header gives, what
+        files have for themselves, and all options of this call, which count for more; or ``case.fit``.
     name : str, optional
-        Pattern of the names of the files in place of ``file_names``, as ``"{fluid}_{load}N_{run}"``: ``run`` numbers repeats,
-        all else tells curves apart.
+        Pattern of the names of the files, as ``"{fluid}_{load}N_{run}"``: ``run`` numbers repeats, all else tells curves
+        apart.
     fluid : str or mapping, optional
         Liquid by which the temperature gives the viscosity, as ``"iso-vg grade=46"`` or ``{"preset": "iso-vg", "grade": 46}``;
         by default that of the case, if it is such a preset.
     temperature : str or float, optional
         Temperature where the files have none, as ``"25 degC"``.
-    per_decade : float
-        Bins for a decade of a speed that never rests, in a ramp or a sine.
+    per_decade : float, optional
+        Bins for a decade of a speed that never rests, in a ramp or a sine; 10 if the case has none.
     arm : str or float, optional
-        Arm over which a torque is the friction force, as ``"20 mm"`` [m]; by default that of the case.
+        Arm over which a torque is the friction force, as ``"20 mm"`` [m].
     track_radius : str or float, optional
-        Radius of the track on which a rotation is a speed [m]; by default that of the case.
+        Radius of the track on which a rotation is a speed [m].
     on_file : callable, optional
         Called after each file with the number of those read and of all.
 
@@ -109,9 +109,15 @@ def read(
     >>> curve.speed.round(6).tolist(), curve.rows.tolist()
     ([0.005, 0.01], [60, 60])
     """
-    settings = (
-        FitSettings() if settings is None else checked_kind("settings", settings, FitSettings, "the FitSettings of a case")
-    )
+    options = {
+        "name": name,
+        "fluid": fluid,
+        "temperature": temperature,
+        "per_decade": per_decade,
+        "arm": arm,
+        "track_radius": track_radius,
+    }
+    settings = with_options(_settings(settings), {key: each for key, each in options.items() if each is not None})
     several = [runs] if isinstance(runs, str | os.PathLike) else list(runs)
     if not several:
         raise InputError("runs is empty; give the files of a rig.")
@@ -119,24 +125,12 @@ def read(
     for i, path in enumerate(paths):
         if path in paths[:i]:
             raise InputError(f"{path} is given twice; a file counts once.")
-    density = to_si(per_decade, "number", "per_decade", "10")
-    if not 1 <= density <= 1000:
-        raise InputError(f"per_decade = {show(per_decade)} must lie between 1 and 1000, as 10.")
-    if name is not None:
-        settings = replace(settings, file_names=read_pattern("name", name))
-    if fluid is not None:
-        settings = replace(settings, liquid=_checked_liquid(fluid))
-    if temperature is not None:
-        settings = replace(settings, liquid=settings.liquid | {"temperature": temperature})
-    for key, value in (("arm", arm), ("track_radius", track_radius)):
-        if value is not None:
-            length = to_si(value, "length", key, "20 mm")
-            if not 0 < length < math.inf:
-                raise InputError(f"{key} = {show(value)} must be a length above zero, as '20 mm'.")
-            settings = replace(settings, **{key: length})
     series: list[Series] = []
     for i, path in enumerate(paths, 1):
-        series.append(passes_of(read_raw(path, settings), density))
+        try:
+            series.append(passes_of(read_raw(path, settings), settings.per_decade))
+        except InputError as problem:
+            raise InputError(_of_bench(str(problem))) from None
         if on_file is not None:
             on_file(i, len(paths))
     curves = _Curves()
@@ -152,13 +146,13 @@ def read(
     liquid = _liquid(settings)
     viscosity = np.array([_viscosity(point, curves.inputs[point.curve], liquid) for point in points])
     notes = [
-        f"{text}: {note}" if len(texts) > 1 else note
+        _of_bench(f"{text}: {note}" if len(texts) > 1 else note)
         for text, one in zip(texts, series, strict=True)
         for note in (*one.raw.notes, *one.notes)
     ]
     notes += [
         f"Left out as run-in: {texts[f]}, {format_si(series[f].passes[k].speed, 'speed')}, which differs from later passes "
-        f'(run_in = "keep" in [fit] keeps it).'
+        f'(run_in = "keep" in [bench] keeps it).'
         for f, k in out
     ]
     return replace(
@@ -169,6 +163,20 @@ def read(
         taken=tuple(one.raw.taken for one in series),
         rolls=settings.rolls or any("slide_to_roll" in each for each in curves.inputs),
     )
+
+
+def _settings(given: str | os.PathLike[str] | Case | FitSettings | None) -> FitSettings:
+    """Return what a call was given of the files."""
+    if given is None:
+        return FitSettings()
+    if isinstance(given, str | os.PathLike):
+        return load_rig(given)
+    return given.bench if isinstance(given, Case) else checked_kind("settings", given, FitSettings, "a case or its settings")
+
+
+def _of_bench(text: str) -> str:
+    """Return what a reader of data files says, with the table in which a rig has it."""
+    return text.replace("[fit", "[bench")
 
 
 def _curve(file: str, raw: Raw, label: str, inputs: dict[str, float], settings: FitSettings) -> tuple[str, dict[str, float]]:
@@ -217,24 +225,6 @@ def _assembled(
         row_friction=np.concatenate([one.friction for one in series]),
         status=np.concatenate([one.status for one in series]),
     )
-
-
-def _checked_liquid(fluid: str | Mapping[str, Any]) -> dict[str, Any]:
-    """Return a liquid and its conditions, as ``iso-vg grade=46`` or a mapping gives them, as the table of a case."""
-    if isinstance(fluid, str):
-        word, *rest = fluid.split()
-        if not all("=" in each for each in rest):
-            raise InputError(f"fluid = {show(fluid)}; write a liquid and its conditions, as 'iso-vg grade=46'.")
-        given: dict[str, Any] = {"preset": word, **dict(each.split("=", 1) for each in rest)}
-    else:
-        given = dict(checked_kind("fluid", fluid, Mapping, "text as 'iso-vg grade=46', or a mapping"))
-    preset = PRESETS[checked_word("fluid", given.get("preset", ""), tuple(PRESETS))]
-    if "temperature" not in preset.conditions:
-        raise InputError(
-            f"fluid = {show(fluid)} has its viscosity at one temperature only; take a liquid of which more is known."
-        )
-    preset(**{key: value for key, value in given.items() if key != "preset"})  # refuses what it does not know
-    return given
 
 
 def _liquid(settings: FitSettings) -> tuple[Preset, dict[str, Any]] | None:

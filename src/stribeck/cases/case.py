@@ -50,6 +50,9 @@ class Case(Described):
     title: Annotated[str, "headline for outputs; empty if the file has none"] = ""
     notes: Annotated[str, "free text; empty if the file has none"] = ""
     fit: Annotated[FitSettings, "the ``[fit]`` table, for :func:`stribeck.fit`"] = field(default_factory=FitSettings)
+    bench: Annotated[
+        FitSettings, "the ``[fit]`` table with what the ``[bench]`` table has in its place, for :func:`stribeck.bench.read`"
+    ] = field(default_factory=FitSettings)
     facts: Annotated[
         dict[str, float],
         "the ``[check]`` table, for :func:`stribeck.check`, in SI units",

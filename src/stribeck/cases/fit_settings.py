@@ -75,14 +75,14 @@ def _names(key: str, value: Any) -> tuple[str, ...]:
     return free_names(value, key)
 
 
-def _entries(key: str, value: Any, read: Entry, inputs: InputTable) -> Any:
-    """Return the entries of a table below ``[fit]``, under the names that are meant."""
+def _entries(key: str, value: Any, read: Entry, inputs: InputTable, above: str) -> Any:
+    """Return the entries of a table below another, under the names that are meant."""
     if not isinstance(value, dict):
-        raise InputError(f"{key} = {show(value)} must be a table, [fit.{key}].")
+        raise InputError(f"{key} = {show(value)} must be a table, [{above}.{key}].")
     problems: list[str] = []
     found = {}
     for name, entry in value.items():
-        with noted(problems, f"fit.{key}"):
+        with noted(problems, f"{above}.{key}"):
             meant, found[meant] = read(key, name, entry, inputs)
     if problems:
         raise InputError("\n".join(problems))
@@ -298,6 +298,10 @@ class FitSettings:
     curves: dict[str, dict[str, Any]] = _key(
         "Name of a curve -> inputs in SI units in which it differs from the case, and its own fluid or solid.", entry=_curve
     )
+    per_decade: float = _key(
+        "Bins for a decade of a speed that never rests, of ``[bench]``: friction is nearly straight within a factor of 1.26.",
+        default=10.0,
+    )
     geometry: str = _key("What was measured: a cylinder, ``line``, or a ball, ``point``.", default="line")
     slide_to_roll: float = _key(
         "Slide-to-roll ratio of the contact: but at 2 and -2 both surfaces move, and a speed may be their mean or their sum.",
@@ -352,16 +356,21 @@ FitSettings.__doc__ = complete_docstring(
 )
 
 
-def check_fit_table(table: Any, geometry: str = "line", liquid: Any = None) -> FitSettings:
-    """Return the settings that a ``[fit]`` table asks for, in a case with a table ``[fluid]``."""
-    problems: list[str] = []
+def keys_of_fit(geometry: str, table: str = "fit") -> dict[str, Key]:
+    """Return the keys of a ``[fit]`` table, under the name that the table has."""
     keys: dict[str, Key] = {}
     for each in fields(FitSettings):
         if (entry := each.metadata.get("entry")) is not None:
-            keys[each.name] = Key(partial(_entries, read=entry, inputs=INPUT_TABLES[geometry]))
+            keys[each.name] = Key(partial(_entries, read=entry, inputs=INPUT_TABLES[geometry], above=table))
         elif (read := each.metadata.get("check")) is not None:
             keys[each.name] = Key(read)
-    found = read_tables({"fit": table}, {"fit": keys}, problems).get("fit", {})
+    return keys
+
+
+def check_fit_table(table: Any, geometry: str = "line", liquid: Any = None) -> FitSettings:
+    """Return the settings that a ``[fit]`` table asks for, in a case with a table ``[fluid]``."""
+    problems: list[str] = []
+    found = read_tables({"fit": table}, {"fit": keys_of_fit(geometry)}, problems).get("fit", {})
     if problems:
         raise InputError("\n".join(problems))
     known = liquid if isinstance(liquid, dict) and "preset" in liquid else {}

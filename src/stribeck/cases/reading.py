@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, get_args
 
+from stribeck.cases.bench_settings import with_bench_table
 from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL, Axis, Case, CurveSettings, curve_range
 from stribeck.cases.facts import FACTS, fact_values
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
@@ -42,8 +43,8 @@ def load_case(path: str | os.PathLike[str]) -> Case:
         ``[surface]``, ``[asperities]`` or ``[table]`` where the law comes from one, and optionally ``[fluid]``,
         ``[cavitation]``, ``[flow_factors]`` and ``[solid]`` (see fluids.md), ``[curve]``
         (``over``, ``range``, ``points``), ``[stroke]`` (see strokes.md),
-        ``[solver]`` (``rtol``, ``definition``), ``[fit]`` (see fitting.md), ``[check]``
-        (facts for :func:`stribeck.check`), ``title`` and ``notes``.
+        ``[solver]`` (``rtol``, ``definition``), ``[fit]`` (see fitting.md), ``[bench]`` (see
+        bench.md), ``[check]`` (facts for :func:`stribeck.check`), ``title`` and ``notes``.
 
     Returns
     -------
@@ -60,6 +61,19 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     return check_case(read_toml(path), path)
 
 
+def load_rig(path: str | os.PathLike[str]) -> FitSettings:
+    """Return what a case says of the files of a rig, or a file with the table ``[bench]`` alone."""
+    path = path_of(path)
+    tables = read_toml(path)
+    if set(tables) != {"bench"}:
+        return check_case(tables, path).bench
+    try:
+        return with_bench_table(FitSettings(), tables)
+    except InputError as problem:
+        _refuse(path, str(problem).splitlines())
+        raise
+
+
 def check_case(tables: dict[str, Any], path: Path) -> Case:
     """Return the case of tables that were read."""
     problems: list[str] = []
@@ -72,9 +86,11 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     table, parts, wrong = take_parts(table, path.parent)
     elsewhere = tuple(own for part, own in IN_PLACE_OF.items() if parts.get(part, tables.get(part)) is not None)
     problems += wrong
-    fit = FitSettings(geometry=geometry)
+    fit = bench = FitSettings(geometry=geometry)
     with noted(problems):
         fit = check_fit_table(table.pop("fit", {}), geometry, tables.get("fluid"))
+        bench = with_bench_table(fit, tables)
+        table.pop("bench", None)
     found = _read_contact(table, problems, inputs, elsewhere)
     checked = read_tables(table, _keys_of_case(geometry), problems)
     facts: dict[str, float] = {}
@@ -102,6 +118,10 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     if "alpha" in found.errors and hasattr(contact.law, "fixed_alpha"):
         _refuse(path, [f"[contact] alpha has no error under law = {show(law)}: it is {contact.alpha:g} by definition."])
     known = {**found.errors, **errors}
+    of_contact: dict[str, Any] = {
+        "slide_to_roll": FitSettings.of(contact).slide_to_roll,
+        "scales_surface": "surface" in tables and not tables["surface"].get("shape_only", False),
+    }
     typical = typical_errors(contact, known) if checked["uncertainty"] == "typical" else {}
     return Case(
         path=path,
@@ -111,11 +131,8 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         stroke=stroke,
         title=checked["title"],
         notes=checked["notes"],
-        fit=replace(
-            fit,
-            slide_to_roll=FitSettings.of(contact).slide_to_roll,
-            scales_surface="surface" in tables and not tables["surface"].get("shape_only", False),
-        ),
+        fit=replace(fit, **of_contact),
+        bench=replace(bench, **of_contact),
         facts={**preset_facts(tables), **{name: found.given[name] for name in FACTS.keys() & found.given.keys()}, **facts},
         errors=known | typical,
         conversions=(

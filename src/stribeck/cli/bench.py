@@ -26,7 +26,7 @@ def bench_command(
     name: str | None = None,
     fluid: str | None = None,
     temperature: Quantity = None,
-    per_decade: float = 10.0,
+    per_decade: float | None = None,
     arm: Quantity = None,
     track_radius: Quantity = None,
     verbose: Verbose = False,
@@ -41,10 +41,9 @@ def bench_command(
 
     Example: stribeck bench rheometer.csv -o curve.csv --arm "15 mm" --track-radius "15 mm"
 
-    The curve is read by stribeck fit as it is.  --case names columns, units, track_radius and arm in its table [fit].  --name
-    is the pattern of the names of the files; --per-decade has the bins of a speed that never rests.
+    The curve is read by stribeck fit as it is.  --case has in its table [bench] these options, columns and units.  --name is
+    the pattern of the names of the files; --per-decade has the bins of a speed that never rests.
     """
-    settings = None if case is None else sb.load_case(case).fit
     if out is not None:
         from stribeck.files.datasets import CSV_ENDINGS
 
@@ -57,7 +56,7 @@ def bench_command(
     with interruptible() as progress:
         found = sb.bench.read(
             runs,
-            settings,
+            case,
             name=name,
             fluid=fluid,
             temperature=temperature,

@@ -224,6 +224,11 @@ def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]
         declared |= {name for name in table.header for text in texts if is_called(name, text)}
         if meaning in RIG:
             found[meaning] = [name for name in table.header if any(is_called(name, text) for text in texts)]
+            if not found[meaning]:
+                raise InputError(
+                    f"{table.path}: the columns are {', '.join(map(show, table.written))}, none called "
+                    f"{show(' or '.join(texts))}, which [fit.columns] has as {meaning}."
+                )
     for name in filter(None, dict.fromkeys(table.header)):
         for meaning, pattern in PATTERNS.items():
             if name in declared or meaning in settings.columns or not is_named(name, pattern):
