@@ -47,7 +47,7 @@ def opened(page: Page, address: str) -> Page:
     """Open the page and wait until it rests."""
     page.set_default_timeout(120_000)  # of a machine with other work
     page.goto(address)
-    page.wait_for_selector(".more tr[data-key=viscosity]")
+    page.wait_for_selector(".ways tr[data-key=viscosity]")
     page.wait_for_timeout(1000)
     return page
 

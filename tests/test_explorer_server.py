@@ -158,37 +158,6 @@ def test_a_file_of_many_columns_does_not_keep_other_pages_waiting(server, page):
     assert time.monotonic() - began < 19, "it was given up"  # a busy machine; 0.3 s of it reads the header
 
 
-def test_of_pages_that_no_browser_takes_few_are_kept():
-    from nicegui import core, ui
-    from nicegui.client import Client
-    from starlette.requests import Request
-
-    from stribeck.explorer import server, tab
-    from stribeck.explorer.inputs import url
-
-    scope = {"type": "http", "method": "GET", "path": "/", "headers": [], "query_string": b"", "server": ("127.0.0.1", 80)}
-
-    async def open_many():
-        core.loop = asyncio.get_running_loop()
-        start = server.example()
-        opened = url.decode([], start)
-        tasks = []
-        for _ in range(tab.MAX_WAITING_PAGES + 3):
-            client = Client(ui.page("/"), request=Request(dict(scope)))
-            with client:
-                tasks.append(asyncio.create_task(tab.Tab(opened, start).open()))
-            await asyncio.sleep(0)
-        await asyncio.gather(*tasks[:3])
-        waiting, left = len(tab.WAITING_PAGES), sum(not task.done() for task in tasks)
-        for made in list(tab.WAITING_PAGES):
-            made.page.client.delete()
-        await asyncio.gather(*tasks)
-        return waiting, left
-
-    waiting, left = asyncio.run(open_many())
-    assert waiting == left == 50
-
-
 def test_a_tab_that_is_closed_is_collected():
     from nicegui import core, ui
     from nicegui.client import Client

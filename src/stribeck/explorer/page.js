@@ -166,7 +166,10 @@ export default {
             <details v-if="answer.reasons.length" :open="answer.verdict === 'outside'"><summary>{{ answer.headline }}</summary><p v-for="each in answer.reasons">{{ each }}</p></details>
             <template v-else>{{ answer.headline }}</template>
           </div>
-          <div class="ways"><h2>What to change</h2><p v-for="each in answer.ways" :key="each">{{ each }}</p></div>
+          <div class="ways"><h2>What to change <span class="waits">{{ waits }}</span></h2><table>
+            <tr v-for="([[name], ...cells], i) in answer.ways" :key="name" :data-key="name || null"><component :is="i ? 'th' : 'td'" :scope="i ? 'row' : null">{{ name }}</component>
+              <component :is="i ? 'td' : 'th'" v-for="([text, small, value], k) in cells" :key="k" :scope="i ? null : 'col'" :data-value="value || null">{{ text }} <small>{{ small }}</small></component></tr>
+          </table></div>
         </template>
       </section>
       <section class="card controls" aria-label="Inputs">
@@ -244,13 +247,6 @@ export default {
           </table>
           <p class="note" v-for="each in remarks">{{ each }}</p>
         </section>
-        <section class="card more" aria-label="Margins">
-          <h2>Margins to the next regimes <span class="caption waits">{{ waits }}</span></h2>
-          <div class="margins" :class="{old: waits}"><table v-if="margins.length">
-            <tr v-for="([[name], ...cells], i) in margins" :key="name" :data-key="name || null"><component :is="i ? 'th' : 'td'" :scope="i ? 'row' : null">{{ name }}</component>
-              <component :is="i ? 'td' : 'th'" v-for="([text, small, value], k) in cells" :key="k" :scope="i ? null : 'col'" :data-value="value || null">{{ text }} <small>{{ small }}</small></component></tr>
-          </table><p class="note" v-for="each in marginNotes.filter(Boolean)">{{ each }}</p></div>
-        </section>
         <section class="card diagram" aria-label="Phase diagram">
           <h2>Regimes <span class="caption">{{ map }}</span></h2><div class="chart-diagram" ref="diagram"></div>
         </section>
@@ -264,7 +260,7 @@ export default {
     </div>`,
   data() {
     const texts = ["title", "source", "message", "waits", "map", "shape", "address", "code"], flags = ["working", "undo", "redo", "fit", "failed"];
-    const lists = ["lists", "rows", "groups", "chips", "complaint", "notes", "numbers", "remarks", "comparison", "margins", "marginNotes"];
+    const lists = ["lists", "rows", "groups", "chips", "complaint", "notes", "numbers", "remarks", "comparison"];
     const empty = [...texts.map((each) => [each, ""]), ...lists.map((each) => [each, []]), ...flags.map((each) => [each, false])];
     return { ...Object.fromEntries(empty), geometry: "line", chosen: {}, answer: null, mapping: null, columns: {}, units: {}, fitting: null, fitted: null, freed: [] };
   },

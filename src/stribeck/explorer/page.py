@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,6 @@ from stribeck.explorer.downloads import KINDS, examples
 from stribeck.explorer.inputs.choices import CHOICES, list_of
 from stribeck.explorer.inputs.inputs import GROUP_FIELDS, Inputs, row_of
 from stribeck.explorer.scans import SCAN_ENDINGS
-from stribeck.regimes.margins import RegimeMargins
 
 UPDATING_TEXT = "Updating ..."  # Text while something is still being computed.
 
@@ -25,12 +23,6 @@ FRAME_TIMEOUT = 2.0  # Time after which a browser that does not answer gets the 
 FILE_ENDINGS = (".toml", ".csv", ".txt", ".tsv", ".dat", *SCAN_ENDINGS)
 
 Problems = dict[str, dict[str, str]]  # What is wrong with fields and lists: text, sentence, and the key of a list
-
-
-def without_rtol(sentence: str) -> str:
-    """Return a sentence about a failure without advice on the tolerance, which the page does not offer."""
-    left = re.sub(r"[;,]? *\b(?:ask for|or)\b[^.;]*\brtol\b[^.;]*", "", sentence)
-    return re.sub(r"\brtol\b", "tolerance", left)
 
 
 class Page(ui.element, component="page.js"):
@@ -71,7 +63,7 @@ def form_of(now: Inputs, problems: Problems) -> dict[str, Any]:
 
 def parts_of(answer: Answer) -> dict[str, Any]:
     """Return what shows an answer: numbers, sentences and charts."""
-    curve, margins, rows = answer.curve, answer.margins, table.numbers(answer)
+    curve, rows = answer.curve, table.numbers(answer)
     drawn = all_charts(answer)
     chips = [{"name": pin.name, "icon": "push_pin", "colour": f"pin{i}"} for i, pin in enumerate(answer.pins)]
     chips += [{"name": found.name, "icon": "scatter_plot", "colour": "ink"} for found in answer.measured]
@@ -81,8 +73,6 @@ def parts_of(answer: Answer) -> dict[str, Any]:
         "numbers": table.number_rows(rows),
         "remarks": table.notes_of_state(answer),
         "comparison": table.comparison(answer),
-        "margins": table.margin_rows(margins) if isinstance(margins, RegimeMargins) else [],
-        "marginNotes": table.margin_notes(margins) if isinstance(margins, RegimeMargins) else [without_rtol(margins or "")],
         "waits": UPDATING_TEXT if "margins" in answer.stale else "",
         "map": f"at this load (group {float(answer.inputs.contact.groups.load):.3g}){_map_text(answer)}",
         "shape": _shape_text(answer) if "shape" in drawn else "",
@@ -93,7 +83,7 @@ def parts_of(answer: Answer) -> dict[str, Any]:
     if curve is not None and "curve" not in answer.stale:
         parts["source"] = curve.source
     elif answer.why:
-        parts["source"] = without_rtol(answer.why)
+        parts["source"] = table.without_rtol(answer.why)
     return parts
 
 

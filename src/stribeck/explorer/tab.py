@@ -25,18 +25,16 @@ from stribeck.explorer.inputs import choices, inputs, url
 from stribeck.explorer.inputs.history import History
 from stribeck.explorer.inputs.inputs import Inputs
 from stribeck.explorer.measured import MEANINGS, Measured, fit_measured, free_inputs
-from stribeck.explorer.page import UPDATING_TEXT, Page, Problems, form_of, parts_of, without_rtol
+from stribeck.explorer.page import UPDATING_TEXT, Page, Problems, form_of, parts_of
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import SCAN_ENDINGS, Scan, with_scan
 from stribeck.explorer.serving.pools import FILES, Threads, run
 from stribeck.explorer.serving.tidy import tidy_soon
+from stribeck.explorer.table import without_rtol
 from stribeck.files.writing import MissingExtraError
 from stribeck.fits.measurements import CHANGE_READ
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve_error import SolveError
-
-MAX_WAITING_PAGES = 50  # Pages that wait for their browser's first answer; of more the oldest is given up.
-WAITING_PAGES: list[Tab] = []  # Pages that were sent and whose browser did not answer yet.
 
 # Open pages, by the names of their clients; a page that is closed drops out.
 TABS: weakref.WeakValueDictionary[str, Tab] = weakref.WeakValueDictionary()
@@ -445,17 +443,11 @@ class Tab:
 
     async def open(self) -> None:
         """Wait for the browser, and show the first answer."""
-        WAITING_PAGES.append(self)
-        while len(WAITING_PAGES) > MAX_WAITING_PAGES:
-            WAITING_PAGES.pop(0).page.client.delete()
         try:
             await self.page.client.connected(timeout=30)
         except TimeoutError:  # the browser went away at once
             if not self.closed:
                 self.page.client.delete()
-        finally:
-            if self in WAITING_PAGES:
-                WAITING_PAGES.remove(self)
         if not self.closed:
             self.show_form()
             self.request()

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -144,31 +145,14 @@ def main_of(answer: Answer, rows: Iterable[Row]) -> dict[str, Any]:
         "verdict": checks.verdict,
         "headline": checks.headline,
         "reasons": [each.sentence for each in checks.said],
-        "ways": _ways(answer),
+        "ways": change_rows(answer),
     }
 
 
-def _ways(answer: Answer) -> list[str]:
-    """Return how the next regimes are reached, the smallest changes first; by the speed alone where no more is known."""
-    margins, speed = answer.margins, answer.inputs.contact.speed
-    if isinstance(margins, RegimeMargins) and "margins" not in answer.stale:
-        ways = {target: _steps(margins, target) for target in margins.targets}
-        return [f"To {target}: {', or '.join(steps) or 'no single input reaches it'}." for target, steps in ways.items()]
-    marks = {} if answer.curve is None or "curve" in answer.stale or speed == 0 else answer.curve.marks
-    passed = {ENTERED.get((answer.regime, name)): mark.value for name, mark in marks.items()}
-    return [f"To {into}: {_step('speed', value / speed, value, 'speed')}." for into, value in passed.items() if into]
-
-
-def _steps(margins: RegimeMargins, target: str) -> list[str]:
-    """Return what each input alone would have to be for a regime, the smallest change first."""
-    found = [(each.name, mark) for each in margins.margins if (mark := each.crossing_into(target)) is not None]
-    marks = sorted((abs(math.log(mark.factor)), name, mark) for name, mark in found if 0 < mark.factor < math.inf)
-    rows = INPUT_TABLES[margins.geometry].quantities
-    return [_step(name, mark.factor, mark.value, rows[name].dimension) for _, name, mark in marks]
-
-
-def _step(name: str, factor: float, value: float, dimension: str) -> str:
-    return f"{name} {_times(factor)} ({_plain(format_si(value, dimension))})"
+def without_rtol(sentence: str) -> str:
+    """Return a sentence about a failure without advice on the tolerance, which the page does not offer."""
+    left = re.sub(r"[;,]? *\b(?:ask for|or)\b[^.;]*\brtol\b[^.;]*", "", sentence)
+    return re.sub(r"\brtol\b", "tolerance", left)
 
 
 def notes_of(notes: Iterable[str]) -> list[str]:
@@ -177,9 +161,11 @@ def notes_of(notes: Iterable[str]) -> list[str]:
 
 
 def notes_of_state(answer: Answer) -> list[str]:
-    """Return the notes on a state, and which errors its intervals count."""
+    """Return the notes on a state and on what to change, and which errors the intervals count."""
     notes = [note for note in answer.solution.notes if not answer.checks.covers(note)]
-    return notes_of([*notes, *([] if answer.spread is None else answer.spread.sources)])
+    margins = answer.margins
+    about = [margins.counted, *margins.notes] if isinstance(margins, RegimeMargins) else [without_rtol(margins or "")]
+    return notes_of([*notes, *([] if answer.spread is None else answer.spread.sources), *about])
 
 
 def comparison(answer: Answer) -> list[list[str]]:
@@ -197,25 +183,37 @@ def comparison(answer: Answer) -> list[list[str]]:
     return [[label, *texts] for label, texts in found.items()]
 
 
-def margin_rows(margins: RegimeMargins) -> list[list[list[str]]]:
-    """Return the margins to the next regimes in each input as rows of cells: text, small text beside it, and the factor."""
-    rows = [[["", "", ""], *([f"to {target}", "", ""] for target in margins.targets)]]
+def change_rows(answer: Answer) -> list[list[list[str]]]:
+    """Return what each input alone would have to be for the next regimes, the smallest change first; a head, then cells.
+
+    A cell is a text, a smaller one beside it, and the factor.  Until the margins are solved it is the speed alone.
+    """
+    margins, speed = answer.margins, answer.inputs.contact.speed
+    if not isinstance(margins, RegimeMargins) or "margins" in answer.stale:
+        marks = {} if answer.curve is None or "curve" in answer.stale or speed == 0 else answer.curve.marks
+        passed = {into: mark.value for name, mark in marks.items() if (into := ENTERED.get((answer.regime, name)))}
+        rows = {"speed": [_change(value / speed, value, "speed") for value in passed.values()]} if passed else {}
+        return _with_head(tuple(passed), rows)
+    quantities, found = INPUT_TABLES[margins.geometry].quantities, []
     for margin in margins.margins:
-        cells = [[margin.name, "", ""]]
+        cells, sizes = [], [math.inf]
         for target in margins.targets:
             mark = margin.crossing_into(target)
             if mark is None:
                 another = margin.less is not None or margin.more is not None  # at which the search that way ended
                 cells.append(["not directly" if another else "not reachable", "", ""])
-                continue
-            value = _plain(format_si(mark.value, INPUT_TABLES[margins.geometry].quantities[margin.name].dimension))
-            interval = f" 95 %: {_interval(mark)}" if mark.interval_95 is not None else ""
-            factor = _times(mark.factor) if 0 < mark.factor < math.inf else ""
-            cells.append([factor, f"({value}){interval}", repr(mark.factor)])
-        rows.append(cells)
-    return rows
+            else:
+                cells.append(_change(mark.factor, mark.value, quantities[margin.name].dimension, _interval(mark)))
+                sizes += [abs(math.log(mark.factor))] if 0 < mark.factor < math.inf else []
+        found.append((min(sizes), margin.name, cells))
+    return _with_head(margins.targets, {name: cells for _, name, cells in sorted(found, key=lambda each: each[0])})
 
 
-def margin_notes(margins: RegimeMargins) -> list[str]:
-    """Return what to know of margins."""
-    return notes_of([margins.counted, *margins.notes])
+def _with_head(targets: Sequence[str], rows: dict[str, list[list[str]]]) -> list[list[list[str]]]:
+    return [[[name, "", ""], *cells] for name, cells in ({"": [[f"to {each}", "", ""] for each in targets]} | rows).items()]
+
+
+def _change(factor: float, value: float, dimension: str, interval: str = "") -> list[str]:
+    is_there = 0 < factor < math.inf
+    small = f"({_plain(format_si(value, dimension))}){f' 95 %: {interval}' if interval else ''}"
+    return [_times(factor) if is_there else "", small, repr(factor) if is_there else ""]
