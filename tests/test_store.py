@@ -5,7 +5,6 @@ import io
 import os
 import re
 import sys
-import textwrap
 
 import netCDF4
 import numpy as np
@@ -13,23 +12,13 @@ import pandas as pd
 import pytest
 import xarray as xr
 from command_line import run_python
+from fit_data import TRUE as CONTACT
 
 import stribeck as sb
 from stribeck.files import writing
 from stribeck.files.datasets import write_csv, write_data, write_netcdf
 from stribeck.files.writing import MissingExtraError, atomic_write, check_writable
 
-CONTACT = sb.LineContact(
-    radius="10 mm",
-    modulus="2.7 MPa",
-    load="30 N/m",
-    viscosity="50 mPa*s",
-    speed="1 mm/s",
-    roughness="1 um",
-    alpha=2.0,
-    beta=0.06,
-    boundary_friction=0.7,
-)
 INPUTS = ("radius", "modulus", "load", "viscosity", "roughness", "alpha", "beta", "boundary_friction")
 WRITERS = {".nc": write_netcdf, ".csv": write_csv}
 
@@ -53,36 +42,24 @@ def dimensionless():
 
 
 def test_every_variable_has_a_unit_and_a_long_name(dataset):
-    for variable in [*dataset.data_vars.values(), *dataset.coords.values()]:
-        assert re.fullmatch(r"1|m|m/s|Pa", variable.attrs["units"])
-        assert len(variable.attrs["long_name"]) > 5
-    assert dataset.speed.attrs["units"] == "m/s"
-    assert dataset.central_film_thickness.attrs["units"] == "m"
-    assert dataset.hertz_pressure.attrs["units"] == "Pa"
+    for variable in dataset.variables.values():
+        assert re.fullmatch(r"1|m|m/s|Pa", variable.attrs["units"]) and len(variable.attrs["long_name"]) > 5
+    units = {"speed": "m/s", "central_film_thickness": "m", "hertz_pressure": "Pa"}
+    assert {name: dataset[name].attrs["units"] for name in units} == units
 
 
 def test_a_dataset_holds_every_observable_of_every_point(curve, dataset):
     names = set(curve.solutions[0].to_dict()) & set(dataset)
     assert names >= {
-        "contact_load_share",
-        "fluid_load_share",
-        "central_gap",
-        "minimum_gap",
-        "minimum_position",
-        "flux_gap",
-        "offset",
-        "lambda_ratio",
-        "hersey_number",
-        "error_estimate",
-        "outcome",
+        *("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "minimum_position", "flux_gap", "offset"),
+        *("lambda_ratio", "hersey_number", "error_estimate", "outcome"),
     }
     for name in names - {"outcome", "regime"}:
         np.testing.assert_allclose(dataset[name], [s.to_dict()[name] for s in curve.solutions], rtol=1e-14)
     for definition in ("published", "balanced"):
         found = [s.friction(definition=definition) for s in curve.solutions]
-        np.testing.assert_array_equal(dataset[f"friction_{definition}"], [f.total for f in found])
-        np.testing.assert_array_equal(dataset[f"friction_{definition}_fluid"], [f.fluid for f in found])
-        np.testing.assert_array_equal(dataset[f"friction_{definition}_error"], [f.error for f in found])
+        for part, column in (("total", ""), ("fluid", "_fluid"), ("error", "_error")):
+            np.testing.assert_array_equal(dataset[f"friction_{definition}{column}"], [getattr(f, part) for f in found])
     np.testing.assert_array_equal(dataset.friction, dataset.friction_balanced)
     np.testing.assert_allclose(dataset.friction, dataset.friction_asperities + dataset.friction_fluid, rtol=1e-14)
     assert dataset.regime.values.tolist() == list(curve.regimes)
@@ -105,25 +82,18 @@ def test_the_attributes_of_a_file_suffice_to_solve_its_points_again(dataset):
     again = sb.solve(sb.LineContact(speed=float(point.speed), **inputs), rtol=dataset.attrs["rtol"])
     assert again.friction().total == pytest.approx(float(point.friction), abs=2 * float(point.friction_error))
     assert "viscosity Pa s" in dataset.attrs["input_units"]
-    assert dataset.attrs["boundary_friction"] == 0.7
-    assert dataset.attrs["beta"] == 0.06
 
 
 def test_the_attributes_tell_settings_landmarks_and_outcome(curve, dataset):
+    told = {"title": "A title", "outcome": "Converged.", "complete": 1, "points": 7, "requested_points": 7, "beta": 0.06}
+    told |= {"contact_law": "exponential", "definition": "balanced", "boundary_friction": 0.7}
+    told |= {"minimum_speed": curve.minimum.value, "minimum_friction": curve.minimum.friction}
+    told |= {"load_group": curve.groups.load[0]}
     attributes = dataset.attrs
-    assert attributes["title"] == "A title"
+    assert {name: attributes[name] for name in told} == told and "speed_group" not in attributes
     assert re.fullmatch(r"stribeck \d+\.\d+\.\d+", attributes["source"])
-    assert attributes["outcome"] == "Converged."
-    assert attributes["complete"] == 1
-    assert attributes["points"] == attributes["requested_points"] == 7
-    assert attributes["contact_law"] == "exponential"
-    assert attributes["definition"] == "balanced"
-    assert attributes["minimum_speed"] == curve.minimum.value
-    assert attributes["minimum_friction"] == curve.minimum.friction
     assert attributes["transition_names"].split("; ") == [mark.name for mark in curve.transitions]
     assert attributes["transition_speed"].tolist() == [mark.value for mark in curve.transitions]
-    assert attributes["load_group"] == curve.groups.load[0]
-    assert "speed_group" not in attributes
     assert "beyond the range of the exponential contact law" in attributes["notes"]
 
 
@@ -136,12 +106,9 @@ def test_without_a_contact_the_coordinate_is_a_group_and_nothing_is_in_metres(di
     assert dataset.attrs["roughness_group"] == 1e-3
 
 
-def test_a_curve_without_minimum_says_so_by_nan():
+def test_a_curve_without_minimum_says_so_by_nan_and_a_group_that_varies_is_no_attribute_however_small_it_is():
     curve = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1.0, 10.0), points=2)
     assert np.isnan(curve.to_dataset().attrs["minimum_speed"])
-
-
-def test_a_group_that_varies_is_no_attribute_however_small_it_is():
     attributes = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-9, 1e-8), points=2).to_dataset().attrs
     assert "speed_group" not in attributes and attributes["load_group"] == 0.1
 
@@ -163,22 +130,16 @@ def test_an_interrupted_curve_is_marked_incomplete(tmp_path):
 # --- files ---
 
 
-def test_netcdf_gives_back_values_units_and_attributes(dataset, tmp_path):
+def test_netcdf_gives_back_values_units_and_attributes_also_without_xarray(dataset, tmp_path):
     write_netcdf(dataset, tmp_path / "curve.nc")
     with xr.open_dataset(tmp_path / "curve.nc", engine="netcdf4") as found:
         xr.testing.assert_equal(found, dataset)
-        for name, variable in dataset.variables.items():
-            assert found[name].attrs == variable.attrs
+        assert all(found[name].attrs == variable.attrs for name, variable in dataset.variables.items())
         assert set(found.attrs) == set(dataset.attrs)
         for name, value in dataset.attrs.items():
             np.testing.assert_array_equal(found.attrs[name], value)
-
-
-def test_netcdf_is_read_without_xarray(dataset, tmp_path):
-    write_netcdf(dataset, tmp_path / "curve.nc")
     with netCDF4.Dataset(tmp_path / "curve.nc") as file:
-        assert file.data_model == "NETCDF4"
-        assert file["speed"].units == "m/s"
+        assert (file.data_model, file["speed"].units) == ("NETCDF4", "m/s")
         assert file["friction"][:].tolist() == dataset.friction.values.tolist()
 
 
@@ -204,18 +165,8 @@ def test_csv_is_read_by_pandas_with_every_digit_below_inputs_and_outcome(dataset
 
 def test_csv_stays_readable_whatever_the_title(subtests, dataset, tmp_path):
     path = tmp_path / "curve.csv"
-    for title in [
-        "",
-        "a, b",
-        'the "second"',
-        "two\nlines",
-        "\r\n",
-        "\r1,2",
-        "# no comment",
-        "µ, 20 °C",
-        "\x0b\x0c\x85\u2028",
-        "\0",
-    ]:
+    titles = "", "a, b", 'the "second"', "two\nlines", "\r\n", "\r1,2", "# no comment", "µ, 20 °C", "\x0b\x0c\x85\u2028", "\0"
+    for title in titles:
         with subtests.test(title=title):
             write_csv(dataset.assign_attrs(title=title), path, force=True)
             assert len(pd.read_csv(path, comment="#")) == dataset.sizes["speed"]
@@ -270,17 +221,15 @@ def test_a_place_that_cannot_be_written_is_refused_beforehand(subtests, tmp_path
             assert sorted(os.listdir(tmp_path)) == before
 
 
-def test_a_folder_without_permission_is_refused(tmp_path, monkeypatch):
+def test_a_folder_without_permission_and_a_protected_file_are_refused_even_when_forced(tmp_path, monkeypatch):
     # Root may write everywhere, so that the refusal of the system is played.
     def refuse(self, exist_ok=True):
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr("pathlib.Path.touch", refuse)
-    with pytest.raises(sb.InputError, match="cannot be written \\(Permission denied\\)"):
-        check_writable(tmp_path / "curve.nc", (".nc",))
-
-
-def test_a_protected_file_is_kept_even_when_forced(tmp_path, monkeypatch):
+    with monkeypatch.context() as patch:
+        patch.setattr("pathlib.Path.touch", refuse)
+        with pytest.raises(sb.InputError, match="cannot be written \\(Permission denied\\)"):
+            check_writable(tmp_path / "curve.nc", (".nc",))
     (tmp_path / "curve.nc").write_text("precious")
     monkeypatch.setattr("os.access", lambda path, mode: False)
     with pytest.raises(sb.InputError, match="write-protected"):
@@ -295,22 +244,18 @@ def test_through_a_link_its_target_is_written_and_the_link_kept(dataset, tmp_pat
     assert (tmp_path / "data" / "curve.csv").stat().st_size > 1000
 
 
-def test_a_failed_write_leaves_the_old_file_and_nothing_else(subtests, tmp_path_factory):
-    for failure in [OSError(28, "No space left on device"), KeyboardInterrupt()]:
-        with subtests.test(failure=failure):
-            tmp_path = tmp_path_factory.mktemp("case")
-            path = tmp_path / "curve.csv"
-            path.write_text("precious")
-            with (
-                pytest.raises((sb.InputError, KeyboardInterrupt)) as caught,
-                atomic_write(path, (".csv",), force=True) as temporary,
-            ):
-                temporary.write_text("half")
-                raise failure
-            if isinstance(failure, OSError):
-                assert "could not be written (No space left on device); it is unchanged" in str(caught.value)
-            assert path.read_text() == "precious"
-            assert os.listdir(tmp_path) == ["curve.csv"]
+def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
+    path = tmp_path / "curve.csv"
+    path.write_text("precious")
+    said = r"could not be written \(No space left on device\); it is unchanged"
+    for failure, seen in ((OSError(28, "No space left on device"), sb.InputError), (KeyboardInterrupt(), KeyboardInterrupt)):
+        with (
+            pytest.raises(seen, match=said if seen is sb.InputError else None),
+            atomic_write(path, (".csv",), force=True) as temporary,
+        ):
+            temporary.write_text("half")
+            raise failure
+        assert path.read_text() == "precious" and os.listdir(tmp_path) == ["curve.csv"]
 
 
 def test_a_file_that_appears_meanwhile_is_kept(tmp_path):
@@ -415,20 +360,16 @@ def test_a_kill_while_writing_leaves_no_half_file(tmp_path):
     assert all(name == "curve.nc" or name.startswith(".stribeck-") for name in os.listdir(tmp_path))
 
 
-@pytest.mark.parametrize(("library", "call"), [("xarray", "to_dataset"), ("netCDF4", "to_netcdf")])
-def test_a_missing_extra_is_one_sentence_with_the_remedy(curve, tmp_path, monkeypatch, library, call):
-    monkeypatch.setitem(sys.modules, library, None)
-    arguments = [] if call == "to_dataset" else [tmp_path / "curve.nc"]
-    with pytest.raises(ImportError, match=rf"needs {library}; install it with: pip install 'stribeck\[data\]'\.") as e:
-        getattr(curve, call)(*arguments)
-    assert isinstance(e.value, MissingExtraError)
-    assert isinstance(e.value, sb.InputError)
+def test_a_missing_extra_is_one_sentence_with_the_remedy(curve, tmp_path, monkeypatch):
+    for library, ask in (("xarray", curve.to_dataset), ("netCDF4", lambda: curve.to_netcdf(tmp_path / "curve.nc"))):
+        with monkeypatch.context() as patch:
+            patch.setitem(sys.modules, library, None)
+            with pytest.raises(ImportError, match=rf"needs {library}; install it with: pip install 'stribeck\[data\]'\.") as e:
+                ask()
+        assert isinstance(e.value, MissingExtraError) and isinstance(e.value, sb.InputError)
 
 
 def test_importing_the_module_does_not_import_xarray():
-    code = textwrap.dedent("""
-        import sys
-        import stribeck.files.datasets, stribeck.plot.curve
-        assert not {"xarray", "netCDF4", "matplotlib", "pandas"} & set(sys.modules)
-    """)
+    heavy = '{"xarray", "netCDF4", "matplotlib", "pandas"}'
+    code = f"import sys, stribeck.files.datasets, stribeck.plot.curve; assert not {heavy} & set(sys.modules)"
     assert run_python(code).code == 0
