@@ -21,6 +21,9 @@ CONTACT = {
 }
 
 
+BALL = {"geometry": "point", "load": "50 mN"}
+
+
 def case_of(contact=None, **tables):
     """Return the case of a file with these tables."""
     with TemporaryDirectory() as folder:
@@ -55,32 +58,24 @@ def test_the_tables_become_parts_of_the_contact():
 
 
 @pytest.mark.quick
-def test_every_model_of_a_fluid_is_read(subtests):
+def test_every_model_of_a_fluid_and_every_solid_is_read():
+    fluids, solids = sb.fluids, sb.solids
     for table, fluid in [
-        ({"model": "eyring", "eyring_stress": "5 MPa"}, sb.fluids.Fluid(sb.fluids.Eyring(5e6))),
-        ({"model": "cross", "relaxation_time": 0.1, "exponent": 0.7}, sb.fluids.Fluid(sb.fluids.Cross(0.1, 0.7))),
-        ({"model": "power-law", "relaxation_time": "1 s", "exponent": 0.7}, sb.fluids.Fluid(sb.fluids.PowerLaw(1.0, 0.7))),
-        ({"pressure_coefficient": "15 1/GPa"}, sb.fluids.Fluid(viscosity=sb.fluids.Barus(1.5e-8))),
-        ({}, sb.fluids.Fluid()),
+        ({"model": "eyring", "eyring_stress": "5 MPa"}, fluids.Fluid(fluids.Eyring(5e6))),
+        ({"model": "cross", "relaxation_time": 0.1, "exponent": 0.7}, fluids.Fluid(fluids.Cross(0.1, 0.7))),
+        ({"model": "power-law", "relaxation_time": "1 s", "exponent": 0.7}, fluids.Fluid(fluids.PowerLaw(1.0, 0.7))),
+        ({"pressure_coefficient": "15 1/GPa"}, fluids.Fluid(viscosity=fluids.Barus(1.5e-8))),
+        ({}, fluids.Fluid()),
     ]:
-        with subtests.test(table=table, fluid=fluid):
-            assert case_of(fluid=table).contact.fluid == fluid
-
-
-@pytest.mark.quick
-def test_every_solid_is_read(subtests):
+        assert case_of(fluid=table).contact.fluid == fluid
+    memory, layer = {"retardation_time": "10 ms", "modulus_ratio": 3}, {"layer_thickness": "2 mm", "poisson_ratio": 0.4}
     for table, solid in [
-        ({"retardation_time": "10 ms", "modulus_ratio": 3}, sb.solids.StandardLinearSolid(0.01, 3.0)),
-        ({"relaxation_times": ["1 ms", 0.01], "moduli": [1.0, 0.5]}, sb.solids.Prony((1e-3, 0.01), (1.0, 0.5))),
-        (
-            {"retardation_time": "10 ms", "modulus_ratio": 3, "layer_thickness": "2 mm", "poisson_ratio": 0.4},
-            sb.solids.StandardLinearSolid(0.01, 3.0, sb.solids.Layer(2e-3, 0.4)),
-        ),
+        (memory, solids.StandardLinearSolid(0.01, 3.0)),
+        ({"relaxation_times": ["1 ms", 0.01], "moduli": [1.0, 0.5]}, solids.Prony((1e-3, 0.01), (1.0, 0.5))),
+        (memory | layer, solids.StandardLinearSolid(0.01, 3.0, solids.Layer(2e-3, 0.4))),
     ]:
-        with subtests.test(table=table, solid=solid):
-            contact = case_of(solid=table).contact
-            assert contact.solid == solid
-            assert contact.groups.model.solid.uses_speed
+        contact = case_of(solid=table).contact
+        assert contact.solid == solid and contact.groups.model.solid.uses_speed
 
 
 @pytest.mark.quick
@@ -113,98 +108,58 @@ def test_flow_factors_take_alpha_and_roughness_of_the_contact():
     assert case_of(flow_factors={"model": "none"}).contact == case_of().contact
 
 
+# Table, what stands in it, and what is said.  Values that numbers cannot have are in test_schema.py.
+WRONG = [
+    ("fluid", {"model": "carreau"}, r"\[fluid\] relaxation_time is missing, which model = 'carreau' needs"),
+    ("fluid", {"model": "eyring", "eyring_stress": "5 MPa", "exponent": 1}, r"\[fluid\] exponent = 1 is given, but model"),
+    ("fluid", {"modle": "carreau"}, r"\[fluid\] modle = 'carreau' is not a known key; did you mean model"),
+    ("fluid", {"model": "eyring", "eyring_stress": "1e-300 Pa"}, r"\[fluid\] eyring_stress = 1e-300: thinning would begin"),
+    ("fluid", {"pressure_coeff": 1}, r"\] pressure_coeff = 1 is not .*mean pressure_coefficient"),
+    ("fluid", {"model": "eyring", "stress": 1e6}, r"\] stress = 1000000.0 is not a known key; write eyring_stress"),
+    ("fluid", {"name": "water"}, r"\[fluid\] name = 'water' is not a known key; write preset"),
+    ("fluid", {"model": "bingham"}, r"\[fluid\] model = 'bingham' must be one of"),
+    ("fluid", {"viscosity_law": "barus"}, r"\[fluid\] pressure_coefficient is missing"),
+    ("fluid", {"viscosity_law": "constant", "pressure_coefficient": 1}, r"\[fluid\] pressure_coefficient = 1 is given, but"),
+    ("fluid", {"pressure_coefficient": "15 1/GPa", "reference_pressure": 1}, "but viscosity_law = 'barus' has no such"),
+    ("fluid", {"pressure_coefficient": 1}, r"\[fluid\] pressure_coefficient times the Hertz pressure is [\d.e+]+; it must"),
+    ("fluid", {"viscosity": 0.05}, r"viscosity = 0.05 is not a known key; it belongs in the table \[contact\]"),
+    ("fluid", {"preset": "honey"}, r"\[fluid\] preset = 'honey' must be one of"),
+    ("fluid", {"preset": "water", "model": "cross"}, r"\[fluid\] model = 'cross' is given, but a preset"),
+    ("fluid", "water", r"fluid = 'water' must be a table, \[fluid\]"),
+    ("solid", {"model": "half-space", "layer_thickness": "2 mm"}, r"\] layer_thickness = '2 mm' is given, but"),
+    ("solid", {"model": "rubber"}, r"\[solid\] model = 'rubber' must be one of 'half-space', 'layer'"),
+    ("solid", {"model": "prony", "layer_thickness": "2 mm"}, r"\[solid\] relaxation_times is missing, which .* needs"),
+    ("solid", {"layer_thicknes": "2 mm"}, r"\] layer_thicknes = '2 mm' is not a .* did you mean layer_th"),
+    ("solid", {"poisson_ratio": 0.5}, r"\[solid\] layer_thickness is missing"),
+    ("solid", {"modulus_ratio": 3}, r"\[solid\] retardation_time is missing, which .* needs; add .* = \"10 ms\""),
+    ("solid", {"retardation_time": "1 s", "moduli": [1]}, r"\[solid\] .* two descriptions"),
+    ("solid", {"relaxation_times": "1 s", "moduli": [1]}, r"\[solid\] relaxation_times = '1 s' must be a list"),
+    ("asperities", {"exponent": 3}, r"\] exponent = 3 is not a known key; known are density, radius, deviation\."),
+    ("cavitation", {}, r"\[cavitation\] model is missing"),
+    ("cavitation", {"model": "swift"}, "must be 'none', 'exit'"),
+    ("motion", {"slide_to_roll": 1}, r"motion = .* is not a known key; write slide_to_roll in \[contact\]"),
+    ("flow_factors", {"gamma": 3}, r"\[flow_factors\] model is missing"),
+    ("flow_factors", {"model": "effective-medium", "gamma": 1}, r"\[flow_factors\] gamma = 1 is given"),
+]
+
+
 @pytest.mark.quick
 def test_what_is_wrong_in_a_table_is_said_with_its_name(subtests):
-    for tables, said in [
-        ({"fluid": {"model": "carreau"}}, r"\[fluid\] relaxation_time is missing, which model = 'carreau' needs"),
-        (
-            {"fluid": {"model": "eyring", "eyring_stress": "5 MPa", "exponent": 1}},
-            r"\[fluid\] exponent = 1 is given, but model",
-        ),
-        ({"fluid": {"modle": "carreau"}}, r"\[fluid\] modle = 'carreau' is not a known key; did you mean model"),
-        (
-            {"fluid": {"model": "eyring", "eyring_stress": "1e-300 Pa"}},
-            r"\[fluid\] eyring_stress = 1e-300: thinning would begin",
-        ),
-        (
-            {"fluid": {"pressure_coeff": 1}},
-            r"\] pressure_coeff = 1 is not .*mean pressure_coefficient",
-        ),
-        (
-            {"solid": {"model": "half-space", "layer_thickness": "2 mm"}},
-            r"\] layer_thickness = '2 mm' is given, but",
-        ),
-        ({"solid": {"model": "rubber"}}, r"\[solid\] model = 'rubber' must be one of 'half-space', 'layer'"),
-        (
-            {"solid": {"model": "prony", "layer_thickness": "2 mm"}},
-            r"\[solid\] relaxation_times is missing, which .* needs",
-        ),
-        (
-            {"fluid": {"model": "eyring", "stress": 1e6}},
-            r"\] stress = 1000000.0 is not a known key; write eyring_stress",
-        ),
-        (
-            {"asperities": {"exponent": 3}},
-            r"\] exponent = 3 is not a known key; known are density, radius, deviation\.",
-        ),
-        ({"solid": {"layer_thicknes": "2 mm"}}, r"\] layer_thicknes = '2 mm' is not a .* did you mean layer_th"),
-        ({"fluid": {"name": "water"}}, r"\[fluid\] name = 'water' is not a known key; write preset"),
-        ({"fluid": {"model": "bingham"}}, r"\[fluid\] model = 'bingham' must be one of"),
-        ({"fluid": {"viscosity_law": "barus"}}, r"\[fluid\] pressure_coefficient is missing"),
-        (
-            {"fluid": {"viscosity_law": "constant", "pressure_coefficient": 1}},
-            r"\[fluid\] pressure_coefficient = 1 is given, but",
-        ),
-        ({"fluid": {"pressure_coefficient": "15 1/GPa", "reference_pressure": 1}}, r"but viscosity_law = 'barus' has no such"),
-        ({"fluid": {"pressure_coefficient": "15 GPa"}}, r"\[fluid\] pressure_coefficient = '15 GPa' is a pressure"),
-        (
-            {"fluid": {"pressure_coefficient": 1}},
-            r"\[fluid\] pressure_coefficient times the Hertz pressure is [\d.e+]+; it must",
-        ),
-        (
-            {"fluid": {"viscosity": 0.05}},
-            r"viscosity = 0.05 is not a known key; it belongs in the table \[contact\]",
-        ),
-        ({"fluid": {"preset": "honey"}}, r"\[fluid\] preset = 'honey' must be one of"),
-        ({"fluid": {"preset": "water", "model": "cross"}}, r"\[fluid\] model = 'cross' is given, but a preset"),
-        ({"fluid": "water"}, r"fluid = 'water' must be a table, \[fluid\]"),
-        ({"cavitation": {}}, r"\[cavitation\] model is missing"),
-        ({"cavitation": {"model": "swift"}}, "must be 'none', 'exit'"),
-        ({"motion": {"slide_to_roll": 1}}, r"motion = .* is not a known key; write slide_to_roll in \[contact\]"),
-        ({"flow_factors": {"gamma": 3}}, r"\[flow_factors\] model is missing"),
-        ({"flow_factors": {"model": "effective-medium", "gamma": 1}}, r"\[flow_factors\] gamma = 1 is given"),
-        ({"solid": {"poisson_ratio": 0.5}}, r"\[solid\] layer_thickness is missing"),
-        (
-            {"solid": {"modulus_ratio": 3}},
-            r"\[solid\] retardation_time is missing, which .* needs; add .* = \"10 ms\"",
-        ),
-        ({"solid": {"retardation_time": "1 s", "moduli": [1]}}, r"\[solid\] .* two descriptions"),
-        ({"solid": {"relaxation_times": "1 s", "moduli": [1]}}, r"\[solid\] relaxation_times = '1 s' must be a list"),
-    ]:
-        with subtests.test(tables=tables, said=said):
-            with pytest.raises(sb.InputError, match=said):
-                case_of(**tables)
-
-
-@pytest.mark.quick
-def test_slide_to_roll_stands_in_contact_whatever_the_geometry(subtests):
-    for geometry in ["line", "point"]:
-        with subtests.test(geometry=geometry):
-            base = {**CONTACT, "geometry": geometry} | ({"load": "50 mN"} if geometry == "point" else {})
-            assert case_of({**base, "slide_to_roll": 0.5}).contact.slide_to_roll == 0.5
-            with pytest.raises(sb.InputError, match=r"\[contact\] slide_to_roll = 500 must be between"):
-                case_of({**base, "slide_to_roll": 500})
-
-
-@pytest.mark.quick
-def test_all_problems_are_told_at_once():
-    with pytest.raises(sb.InputError) as problem:
+    for table, given, said in WRONG:
+        with subtests.test(said), pytest.raises(sb.InputError, match=said):
+            case_of(**{table: given})
+    with pytest.raises(sb.InputError) as problem:  # all at once
         case_of(fluid={"model": "carreau"}, flow_factors={"slip": 1}, solid={})
-    assert [line.split("]")[0].split("[")[1] for line in str(problem.value).split("\n")] == [
-        "fluid",
-        "flow_factors",
-        "solid",
-    ]
+    named = [line.split("]")[0].split("[")[1] for line in str(problem.value).split("\n")]
+    assert named == ["fluid", "flow_factors", "solid"]
+
+
+@pytest.mark.quick
+def test_slide_to_roll_stands_in_contact_whatever_the_geometry():
+    for own in ({"geometry": "line"}, BALL):
+        assert case_of(CONTACT | own | {"slide_to_roll": 0.5}).contact.slide_to_roll == 0.5
+        with pytest.raises(sb.InputError, match=r"\[contact\] slide_to_roll = 500 must be between"):
+            case_of(CONTACT | own | {"slide_to_roll": 500})
 
 
 @pytest.mark.quick
@@ -215,8 +170,5 @@ def test_data_of_a_ball_have_its_units_without_a_table_fit_too(tmp_path):
 
 
 def test_a_ball_has_the_tables_of_a_cylinder():
-    ball = {**CONTACT, "geometry": "point", "load": "50 mN"}
-    torn = case_of(ball, cavitation={"model": "exit"}).contact
-    assert torn.cavitation == "exit"
-    assert torn.groups.model.cavitation == "exit"
-    assert torn.replace(load="40 mN").cavitation == "exit"
+    torn = case_of(CONTACT | BALL, cavitation={"model": "exit"}).contact
+    assert torn.cavitation == torn.groups.model.cavitation == torn.replace(load="40 mN").cavitation == "exit"

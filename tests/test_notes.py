@@ -48,21 +48,16 @@ def no_scans(monkeypatch):
 # --- the contact law ---
 
 
-def test_inside_the_range_of_the_law_nothing_is_said():
-    solution = sb.solve(TRUE)
-    assert LAW_RANGE[0] < gap(solution) < 1  # where "at the end of its range (0.4 to 2)" was said of 0.78
-    assert solution.notes == ()
-
-
-def test_a_gap_above_the_range_is_noted_while_asperities_matter_and_not_beyond(pdms):
+def test_a_gap_is_noted_above_the_range_while_asperities_matter_and_neither_inside_nor_beyond(pdms):
     said = [any("beyond the range of the exponential" in note for note in s.notes) for s in pdms.solutions]
     wanted = [gap(s) > LAW_RANGE[1] and matters(s) for s in pdms.solutions]
-    assert said == wanted
-    assert any(said) and not said[0] and not said[-1]
-    [note] = [note for s in pdms.solutions for note in s.notes if "beyond" in note][:1]
-    i = said.index(True)
-    assert f"{gap(pdms.solutions[i]):.3g} h_rms" in note
-    assert f"carry {100 * pdms.solutions[i].contact_load_share:.2g} % of the load" in note
+    assert said == wanted and any(said) and not said[0] and not said[-1]
+    state = pdms.solutions[said.index(True)]
+    [note] = [note for note in state.notes if "beyond" in note]
+    assert f"{gap(state):.3g} h_rms" in note
+    assert f"carry {100 * state.contact_load_share:.2g} % of the load" in note
+    inside = sb.solve(TRUE)
+    assert LAW_RANGE[0] < gap(inside) < 1 and inside.notes == ()
 
 
 def test_the_minimum_of_the_demo_says_that_its_gap_is_beyond_the_range(pdms, capsys, no_scans):
@@ -83,14 +78,11 @@ def test_a_surface_with_fewer_high_asperities_has_its_minimum_a_fifth_lower():
     law = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=6e-6, q0=1e4, q1=1e6, hurst=0.8))
     rows = sb.contact_laws.TableLaw.read(EXAMPLES / "gfmd_mean_gap.csv")
     table = sb.contact_laws.TableLaw(law.alpha * np.array(rows.separation), np.array(rows.pressure) / law.beta)
+    settings = {"speed": (0.01, 0.2), "points": 7, "boundary_friction": 0.7, "beta": law.beta, "rtol": 1e-5}
 
     def minimum(load, shape):
-        groups = sb.Groups(0.0, load, 0.01 * load, law=shape)
-        speed = (0.01, 0.2)
-        curve = sb.stribeck_curve(
-            groups, speed=speed, points=7, boundary_friction=0.7, beta=law.beta, definition="balanced", rtol=1e-5
-        )
-        return np.array([curve.minimum.value, curve.minimum.friction])
+        found = sb.stribeck_curve(sb.Groups(0.0, load, 0.01 * load, law=shape), **settings).minimum
+        return np.array([found.value, found.friction])
 
     for load, changes in ((0.1, (-0.207, -0.172)), (1.0, (-0.104, -0.063))):
         assert minimum(load, table) / minimum(load, None) - 1 == pytest.approx(changes, abs=1e-3)
@@ -128,22 +120,15 @@ def test_a_heavy_load_is_not_noted_where_the_fluid_carries_it():
 # --- hard elastohydrodynamics ---
 
 
-def test_a_hertz_pressure_that_makes_oil_stiff_is_noted_first(subtests):
-    for part, noted in [(0.99, False), (1.01, True)]:
-        with subtests.test(part=part, noted=noted):
-            factor = part * MAX_HERTZ_PRESSURE / TRUE.hertz.pressure
-            contact = TRUE.replace(**{name: factor * getattr(TRUE, name) for name in ("modulus", "load", "viscosity")})
-            solution = sb.solve(contact.replace(speed="20 mm/s"), rtol=1e-4)
-            assert any(note.startswith(HARD_PREFIX) for note in solution.notes) == noted
-            assert len(solution.notes) > 1 and solution.notes[0].startswith(HARD_PREFIX) == noted
+def test_a_hertz_pressure_that_makes_oil_stiff_is_noted_first_unless_the_fluid_stiffens():
+    def notes(part, **changes):
+        factor = part * MAX_HERTZ_PRESSURE / TRUE.hertz.pressure
+        stiff = TRUE.replace(**{name: factor * getattr(TRUE, name) for name in ("modulus", "load", "viscosity")})
+        return sb.solve(stiff.replace(speed="20 mm/s", **changes), rtol=1e-3).notes
 
-
-def test_a_fluid_that_stiffens_with_pressure_is_not_said_to_be_missing():
-    contact = TRUE.replace(modulus=4 * MAX_HERTZ_PRESSURE**2 / TRUE.hertz.pressure**2 * TRUE.modulus)
-    hard, modelled = (
-        sb.solve(each, rtol=1e-3).notes for each in (contact, contact.replace(fluid=sb.fluids.Barus("10 1/GPa")))
-    )
-    assert hard[0].startswith(HARD_PREFIX) and not any(note.startswith(HARD_PREFIX) for note in modelled)
+    below, above, modelled = notes(0.99), notes(1.01), notes(1.01, fluid=sb.fluids.Barus("1 1/GPa"))
+    assert len(above) > 1 and above[0].startswith(HARD_PREFIX)
+    assert not any(note.startswith(HARD_PREFIX) for note in (*below, *modelled))
 
 
 def test_steel_in_oil_reads_it_in_the_first_line_of_every_command(tmp_path, capsys, no_scans):
@@ -173,28 +158,12 @@ def test_over_the_load_the_first_note_is_that_of_the_pressure_too():
 # --- what can be reached ---
 
 
-@pytest.fixture(scope="module")
-def slow_and_stiff():
-    """Return a contact that would be hydrodynamic at speeds and roughness that there are not, and its margins."""
-    contact = sb.LineContact(
-        radius="20 mm",
-        youngs_modulus="210 GPa",
-        poisson_ratio=0.3,
-        load="202 N/mm",
-        viscosity="1 mPa*s",
-        speed="1 mm/s",
-        roughness="1 um",
-        alpha=2.0,
-        beta=0.02,
-        boundary_friction=0.12,
-    )
-    return contact, regime_margins(contact, rtol=1e-4)
-
-
-def test_no_advice_leaves_what_an_input_can_be(slow_and_stiff):
-    contact, found = slow_and_stiff
+def test_no_advice_leaves_what_an_input_can_be():
+    """A contact that would be hydrodynamic at speeds and a roughness that there are not."""
+    steel = {"youngs_modulus": "210 GPa", "poisson_ratio": 0.3, "load": "202 N/mm", "viscosity": "1 mPa*s"}
+    contact = TRUE.replace(**steel, radius="20 mm", beta=0.02, boundary_friction=0.12)
     highest = {"speed": 1e3, "roughness": contact.hertz.half_width}  # that of sound; not 866 mm, 43 times the radius
-    for margin in found.margins:
+    for margin in regime_margins(contact, rtol=1e-4).margins:
         high = highest.get(margin.name, math.inf)
         assert margin.searched[1] <= high * (1 + 1e-9)
         assert all(mark is None or mark.value <= high for mark in (margin.less, margin.more))

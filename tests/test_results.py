@@ -1,21 +1,14 @@
 """What results have in common: they show themselves in a screen, are equal by value, draw into axes, have one friction."""
 
 import pickle
-from pathlib import Path
 
 import numpy as np
 import pytest
-from command_line import call
+from command_line import EXAMPLES, PDMS, call
+from fit_data import TRUE as CONTACT
 from fit_data import noisy
 
 import stribeck as sb
-
-EXAMPLES = Path(__file__).parents[1] / "examples"
-
-CONTACT = sb.LineContact(
-    radius="10 mm", modulus="2.7 MPa", load="30 N/m", viscosity="50 mPa*s", speed="1 mm/s", roughness="1 um", alpha=2.0,
-    beta=0.06, boundary_friction=0.7,
-)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -28,26 +21,16 @@ def curve():
     return sb.stribeck_curve(CONTACT, points=17)
 
 
-@pytest.fixture(params=["state", "curve"])
-def result(request):
-    return request.getfixturevalue(request.param)
-
-
 @pytest.mark.quick
-def test_a_result_shows_itself_in_a_screen(result):
-    lines = repr(result).splitlines()
-    assert 5 < len(lines) < 25 and len(repr(result)) < 2500
-    assert lines[0].startswith(f"{type(result).__name__}: ")
-    assert f"estimated error: {result.error_estimate:.1e}" in repr(result) and "(rtol 1e-06)" in repr(result)
-
-
-def test_the_state_says_its_regime_friction_and_film(state):
+def test_a_result_shows_itself_in_a_screen(state, curve):
+    for result in (state, curve):
+        text = repr(result)
+        assert 5 < len(text.splitlines()) < 25 and len(text) < 2500
+        assert text.startswith(f"{type(result).__name__}: ")
+        assert f"estimated error: {result.error_estimate:.1e}" in text and "(rtol 1e-06)" in text
     text = repr(state)
     assert text.startswith("Solution: mixed lubrication\n") and state.regime == "mixed"
     assert f"friction coefficient, balanced: {state.friction:.4g} ± " in text and "702.2 nm" in text
-
-
-def test_the_curve_says_its_range_minimum_and_notes(curve):
     assert curve.minimum.name in repr(curve) and f"{curve.minimum.friction:.4g} at speed 27.6 mm/s" in repr(curve)
     assert all(note in repr(curve) for note in curve.notes)
 
@@ -93,30 +76,29 @@ def test_a_state_says_the_error_of_its_friction_where_that_is_the_larger():
     assert "of the friction" not in repr(state)
 
 
-def test_a_notebook_gets_a_table_in_which_no_text_is_code(result):
-    html = result._repr_html_()
-    assert html.count("<tr>") == html.count("</tr>") > 5
+def test_a_notebook_gets_a_table_in_which_no_text_is_code(state, curve):
+    for result in (state, curve):
+        html = result._repr_html_()
+        assert html.count("<tr>") == html.count("</tr>") > 5
     named = sb.contact_laws.FunctionLaw(lambda s: -s, lambda s: -np.ones_like(s), name="<script>")
     odd = sb.solve(CONTACT, law=named, rtol=1e-3)._repr_html_()
     assert "<script>" not in odd and "&lt;script&gt;" in odd
+    assert "50 mPa·s" in CONTACT._repr_html_() and "effective modulus" in CONTACT._repr_html_()
+    assert CONTACT.to_si()["viscosity"] == 0.05 and sb.LineContact(**CONTACT.to_si()) == CONTACT
 
 
 @pytest.mark.quick
-def test_a_result_equals_itself_after_pickling_and_no_other(state):
-    again = pickle.loads(pickle.dumps(state))
-    assert again == state and hash(again) == hash(state)
-    assert state == sb.solve(CONTACT)
-    profile = state.profile([0.0, 0.5])
-    assert pickle.loads(pickle.dumps(profile)) == profile != state.profile([0.0, 0.6])
-    assert state != sb.solve(CONTACT.replace(speed="1.001 mm/s")) and state != "state"
-
-
-def test_curves_and_laws_equal_themselves_after_pickling(curve):
-    assert pickle.loads(pickle.dumps(curve)) == curve
-    assert curve != sb.stribeck_curve(CONTACT, points=16)
+def test_a_result_equals_itself_after_pickling_and_no_other(state, curve):
     law = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=1e4, q1=1e7, hurst=0.8))
-    contact = CONTACT.replace(law=law)
-    assert pickle.loads(pickle.dumps(contact)) == contact != CONTACT.replace(law=law.scaled(2e-6))
+    contact, profile = CONTACT.replace(law=law), state.profile([0.0, 0.5])
+    for each, another in (
+        (state, sb.solve(CONTACT.replace(speed="1.001 mm/s"))),
+        (profile, state.profile([0.0, 0.6])),
+        (curve, sb.stribeck_curve(CONTACT, points=16)),
+        (contact, CONTACT.replace(law=law.scaled(2e-6))),
+    ):
+        assert pickle.loads(pickle.dumps(each)) == each != another and each != "state"
+    assert state == sb.solve(CONTACT) and hash(pickle.loads(pickle.dumps(state))) == hash(state)
 
 
 @pytest.mark.quick
@@ -151,14 +133,17 @@ def test_results_draw_into_axes_that_are_given(state, curve):
         state.plot(ax=3)
 
 
-def test_a_state_is_a_dataset_in_si_units(state):
+def test_a_state_and_a_curve_are_in_si_units(state, curve):
     pytest.importorskip("xarray")
     data = state.to_dataset()
-    fields = state.to_si()
-    np.testing.assert_array_equal(data.gap, fields.gap)
+    np.testing.assert_array_equal(data.gap, state.to_si().gap)
     assert (data.gap.units, data.x.units, data.fluid_pressure.units) == ("m", "m", "Pa")
     assert data.friction_balanced == state.friction.total and data.friction_balanced_error == state.friction.error
     assert sb.solve(state.groups).to_dataset().gap.units == "u_Hz"
+    films = curve.observable("central_gap") * CONTACT.hertz.indentation
+    np.testing.assert_allclose(curve.to_si()["central_film_thickness"], films, rtol=1e-15)
+    with pytest.raises(sb.InputError, match="to_si needs the Hertz scales"):
+        sb.stribeck_curve(load=0.1, roughness=1e-4, speed=[1e-4, 2e-4]).to_si()
 
 
 def test_an_error_is_absolute_and_in_the_unit_of_its_number(state, curve):
@@ -175,15 +160,6 @@ def test_an_error_is_absolute_and_in_the_unit_of_its_number(state, curve):
     relative = batch.central_gap_error / batch.central_gap
     assert batch.central_gap_error.units == batch.central_gap.units and (0 < relative).all() and (relative < 1e-6).all()
     assert state.to_dict()["central_gap_error"] == pytest.approx(state.errors["central_gap"] * state.central_gap, rel=1e-12)
-
-
-def test_a_curve_in_si_units(curve):
-    hertz = CONTACT.hertz
-    np.testing.assert_allclose(
-        curve.to_si()["central_film_thickness"], curve.observable("central_gap") * hertz.indentation, rtol=1e-15
-    )
-    with pytest.raises(sb.InputError, match="to_si needs the Hertz scales"):
-        sb.stribeck_curve(load=0.1, roughness=1e-4, speed=[1e-4, 2e-4]).to_si()
 
 
 @pytest.mark.quick
@@ -224,7 +200,8 @@ def test_an_attribute_that_is_misspelled_is_answered_with_the_nearest(state):
 
 def test_what_fails_in_a_property_of_a_result_is_not_hidden_as_an_unknown_name(state, curve, monkeypatch):
     many = sb.solve_batch(CONTACT, speed=["1 mm/s", "2 mm/s"], rtol=1e-3)
-    for result, name in ((state, "regime"), (curve.solutions[3], "regime"), (curve.at(CONTACT.speed), "errors"), (many, "ok")):
+    results = (state, "regime"), (curve.solutions[3], "regime"), (curve.at(CONTACT.speed), "errors"), (many, "ok")
+    for result, name in (*results, (CONTACT, "hertz")):
         with pytest.raises(AttributeError, match=f"{type(result).__name__}.* has no attribute 'no_such_thing'"):
             result.no_such_thing  # noqa: B018
         monkeypatch.setattr(type(result), name, property(lambda self: self.a_number.no_such_thing))
@@ -234,12 +211,9 @@ def test_what_fails_in_a_property_of_a_result_is_not_hidden_as_an_unknown_name(s
 
 
 def test_the_words_of_the_regimes_command_are_there_in_python(capsys):
-    case = Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml"
-    answer = call(capsys, "regimes", case, "-v")
-    assert answer.code == 0
-    printed = [" ".join(line.split()) for line in answer.out.splitlines()]
-    found = sb.explain(sb.load_case(case))
-    assert [" ".join(line.split()) for line in str(found).splitlines()] == printed
+    answer = call(capsys, "regimes", PDMS, "-v")
+    found = sb.explain(sb.load_case(PDMS))
+    assert answer.code == 0 and str(found).split() == answer.out.split()
     assert repr(found) == str(found) and "<pre" in found._repr_html_()
     assert "Mixed lubrication at 1 mm/s" in sb.explain(CONTACT)
     with pytest.raises(sb.InputError, match="give a contact"):
@@ -265,9 +239,8 @@ def test_a_keyword_that_is_misspelled_is_answered_with_the_nearest(state):
 
 
 def test_what_is_measured_or_checked_shows_itself_in_a_screen():
-    examples = Path(__file__).parents[1] / "examples"
-    surface = sb.surfaces.analyse(sb.surfaces.read_topography(examples / "cylinder_profile.csv"))
-    measured = sb.read_measurements(examples / "pdms_measured.csv")
+    surface = sb.surfaces.analyse(sb.surfaces.read_topography(EXAMPLES / "cylinder_profile.csv"))
+    measured = sb.read_measurements(EXAMPLES / "pdms_measured.csv")
     profile, spread = sb.solve(CONTACT).profile(np.linspace(-3, 3, 500)), sb.propagate(CONTACT, {"roughness": 0.1})
     for each in (surface, surface.measured, measured, sb.check(CONTACT), profile, spread):
         assert len(repr(each).splitlines()) < 25 and len(repr(each)) < 2500 and "<table" in each._repr_html_()
@@ -276,6 +249,12 @@ def test_what_is_measured_or_checked_shows_itself_in_a_screen():
     surface.plot(ax=ax)
     assert ax.lines and "height" in ax.get_ylabel()
     assert sb.check(CONTACT)["shear rate"].texts[1] != "inf 1/s"
+
+
+def table(path):
+    """Return the names of the columns of a CSV file, without their units, and its rows."""
+    names, *rows = [line.split(",") for line in path.read_text().splitlines() if not line.startswith("#")]
+    return [name.partition(" ")[0] for name in names], rows
 
 
 def test_every_result_writes_its_dataset_and_a_table_with_a_row_for_each_state(state, tmp_path):
@@ -288,18 +267,12 @@ def test_every_result_writes_its_dataset_and_a_table_with_a_row_for_each_state(s
             for variable, written in found.to_dataset().variables.items():
                 np.testing.assert_array_equal(data[variable], written)
     state.to_csv(tmp_path / "state.csv")
-    names, *rows = [line for line in (tmp_path / "state.csv").read_text().splitlines() if not line.startswith("#")]
-    assert names.split(",")[:2] == ["x [m]", "gap [m]"]
-    np.testing.assert_array_equal([float(row.split(",")[1]) for row in rows], state.to_si().gap)
+    names, rows = table(tmp_path / "state.csv")
+    assert names[:2] == ["x", "gap"]
+    np.testing.assert_array_equal([float(row[1]) for row in rows], state.to_si().gap)
     batch.to_csv(tmp_path / "batch.csv")
-    names, *rows = [line for line in (tmp_path / "batch.csv").read_text().splitlines() if not line.startswith("#")]
-    assert [name.partition(" ")[0] for name in names.split(",")[:2]] == list(batch.dims) and len(rows) == 4
-
-
-@pytest.mark.quick
-def test_a_contact_is_a_table_in_a_notebook_and_a_dictionary_in_si():
-    assert "50 mPa·s" in CONTACT._repr_html_() and "effective modulus" in CONTACT._repr_html_()
-    assert CONTACT.to_si()["viscosity"] == 0.05 and sb.LineContact(**CONTACT.to_si()) == CONTACT
+    names, rows = table(tmp_path / "batch.csv")
+    assert names[:2] == list(batch.dims) and len(rows) == 4
 
 
 def test_a_fit_shows_itself_and_is_a_dataset():
@@ -326,33 +299,27 @@ def test_a_sweep_shows_itself_and_draws(tmp_path):
     assert ax.lines[0].get_xdata().tolist() == pytest.approx([1e-5, 1e-4]) and ax.get_xlabel().startswith("speed")
 
 
-def test_films_and_the_largest_pressure_of_a_contact_are_in_si_units(subtests):
-    for name in ["pdms_cylinder", "pdms_ball"]:
-        with subtests.test(name=name):
-            contact = sb.load_case(EXAMPLES / f"{name}.toml").contact
-            state = sb.solve(contact, rtol=1e-3)
-            assert state.central_film_thickness == pytest.approx(state.central_gap * contact.hertz.indentation)
-            assert state.minimum_film_thickness == pytest.approx(state.minimum_gap * contact.hertz.indentation)
-            assert 0 < state.minimum_film_thickness <= state.central_film_thickness
-            # Hertz's pressure is that of a dry smooth contact, to which films add and from which they take a little.
-            assert 0.5 < state.maximum_pressure / contact.hertz.pressure < 1.5
-            groups = sb.solve(contact.groups, rtol=1e-3)
-            for attribute in ("central_film_thickness", "minimum_film_thickness", "maximum_pressure"):
-                with pytest.raises(
-                    sb.InputError, match=f"{attribute} is in SI units, but this state was solved from groups alone"
-                ):
-                    getattr(groups, attribute)
+def test_films_and_the_largest_pressure_of_a_contact_are_in_si_units():
+    for name in ("pdms_cylinder", "pdms_ball"):
+        contact = sb.load_case(EXAMPLES / f"{name}.toml").contact
+        state, groups = (sb.solve(each, rtol=1e-3) for each in (contact, contact.groups))
+        assert state.central_film_thickness == pytest.approx(state.central_gap * contact.hertz.indentation)
+        assert state.minimum_film_thickness == pytest.approx(state.minimum_gap * contact.hertz.indentation)
+        assert 0 < state.minimum_film_thickness <= state.central_film_thickness
+        # Hertz's pressure is that of a dry smooth contact, to which films add and from which they take a little.
+        assert 0.5 < state.maximum_pressure / contact.hertz.pressure < 1.5
+        for attribute in ("central_film_thickness", "minimum_film_thickness", "maximum_pressure"):
+            with pytest.raises(sb.InputError, match=f"{attribute} is in SI units, but this state was solved from groups"):
+                getattr(groups, attribute)
 
 
-def test_a_curve_and_its_minimum_have_the_inputs_by_name(subtests):
-    for method in ["atlas", "solver"]:
-        with subtests.test(method=method):
-            contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact
-            curve = sb.stribeck_curve(contact, speed=("1 mm/s", "1 m/s"), points=7, method=method)
-            np.testing.assert_array_equal(curve.speed, curve.values)
-            assert set(curve.load) == {contact.load} and set(curve.roughness) == {contact.roughness}
-            assert curve.minimum.speed == curve.minimum.value
-            with pytest.raises(AttributeError, match="over speed"):
-                _ = curve.minimum.load
-            over = sb.stribeck_curve(contact, roughness=("0.3 um", "3 um"), points=3, method=method)
-            np.testing.assert_array_equal(over.roughness, over.values)
+def test_a_curve_and_its_minimum_have_the_inputs_by_name():
+    for method in ("atlas", "solver"):
+        curve = sb.stribeck_curve(CONTACT, speed=("1 mm/s", "1 m/s"), points=7, method=method)
+        np.testing.assert_array_equal(curve.speed, curve.values)
+        assert set(curve.load) == {CONTACT.load} and set(curve.roughness) == {CONTACT.roughness}
+        assert curve.minimum.speed == curve.minimum.value
+        with pytest.raises(AttributeError, match="over speed"):
+            _ = curve.minimum.load
+        over = sb.stribeck_curve(CONTACT, roughness=("0.3 um", "3 um"), points=3, method=method)
+        np.testing.assert_array_equal(over.roughness, over.values)

@@ -43,51 +43,40 @@ def test_elasticities_agree_with_differences_of_cold_solves():
         assert found[name] == pytest.approx((f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step), abs=1e-6)
 
 
-def test_elasticities_obey_the_dimensions():
+def test_elasticities_obey_the_dimensions_and_vanish_where_an_input_does_not_count():
     # Speed and viscosity enter as their product; friction knows no unit of force and none of length.
     _, found = friction_sensitivities(TRUE)
-    assert found["speed"] == found["viscosity"]
+    assert found["speed"] == found["viscosity"] and found["alpha"] == -found["roughness"]
     assert found["load"] + found["modulus"] + found["viscosity"] == pytest.approx(0, abs=1e-12)
-    assert found["alpha"] == -found["roughness"]
-
-
-def test_at_rest_only_the_dry_friction_coefficient_matters():
     solution, found = friction_sensitivities(TRUE.replace(speed=0))
     assert found.pop("boundary_friction") == pytest.approx(1, abs=1e-6)
-    assert set(found.values()) == {0.0}
-    assert solution.groups.speed == 0
-
-
-def test_a_smooth_contact_does_not_ask_for_its_law_of_roughness():
+    assert set(found.values()) == {0.0} and solution.groups.speed == 0
     _, found = friction_sensitivities(TRUE.replace(roughness=0))
-    assert found["roughness"] == found["alpha"] == found["boundary_friction"] == 0
-    assert (
-        abs(found["beta"]) < 1e-9
-    )  # the fluid's part and the groups' cancel but for the rounding of a solve with the Jacobian
-    assert found["speed"] > 0.4
-
-
-def test_where_there_is_no_friction_elasticities_are_no_number():
+    assert found["roughness"] == found["alpha"] == found["boundary_friction"] == 0 and found["speed"] > 0.4
+    assert abs(found["beta"]) < 1e-9  # both parts cancel but for the rounding of a solve with the Jacobian
     _, found = friction_sensitivities(TRUE.replace(speed=0, boundary_friction=0))
     assert all(math.isnan(value) for value in found.values())
+    for arguments in ({"rtol": 1e-20}, {"definition": "mine"}):
+        with pytest.raises(sb.InputError):
+            friction_sensitivities(TRUE, **arguments)
 
 
-def test_bad_settings_are_refused(subtests):
-    for arguments in [{"rtol": 1e-20}, {"definition": "mine"}]:
-        with subtests.test(arguments=arguments):
-            with pytest.raises(sb.InputError):
-                friction_sensitivities(TRUE, **arguments)
+SEPARATIONS = np.linspace(0.05, 6.0, 40)
+TABLE = sb.contact_laws.TableLaw(SEPARATIONS, np.exp(-SEPARATIONS) + 0.3 * np.exp(-3 * SEPARATIONS))
 
 
 def test_sensitivities_are_differences_of_solved_friction(subtests):
+    moving = {"speed": "10 mm/s"}
     for parts, names in [
-        ({"flow_factors": "effective-medium"}, ("roughness", "alpha")),
-        ({"slide_to_roll": -1.0}, ("boundary_friction", "load")),
-        ({"solid": sb.solids.Layer("1 mm")}, ("layer_thickness", "modulus")),
-        ({"fluid": sb.fluids.Carreau("1 ms", 0.5)}, ("viscosity", "load")),
+        (moving | {"flow_factors": "effective-medium"}, ("roughness", "alpha")),
+        (moving | {"slide_to_roll": -1.0}, ("boundary_friction", "load")),
+        (moving | {"solid": sb.solids.Layer("1 mm")}, ("layer_thickness", "modulus")),
+        (moving | {"fluid": sb.fluids.Carreau("1 ms", 0.5)}, ("viscosity", "load")),
+        ({"law": sb.contact_laws.GreenwoodTripp(), "alpha": 1.0}, ("load", "roughness")),
+        ({"law": TABLE}, ("load", "roughness")),
     ]:
-        with subtests.test(parts=parts, names=names):
-            contact = TRUE.replace(speed="10 mm/s", **parts)
+        with subtests.test(names=names):
+            contact = TRUE.replace(**parts)
             _, found = friction_sensitivities(contact, rtol=1e-7)
             for name in names:
                 assert found[name] == pytest.approx(differences(contact, name), abs=2e-4), name
@@ -147,20 +136,6 @@ def test_the_printed_friction_of_a_thin_film_has_the_slopes_of_solved_states():
     assert found["load"] == pytest.approx(differences(contact, "load", "published", step=1e-2), abs=5e-5)
 
 
-def test_sensitivities_under_a_law_are_the_differences_of_solved_friction(subtests):
-    separations = np.linspace(0.05, 6.0, 40)
-    laws = {
-        "greenwood-tripp": sb.contact_laws.GreenwoodTripp(),
-        "table": sb.contact_laws.TableLaw(separations, np.exp(-separations) + 0.3 * np.exp(-3 * separations)),
-    }
-    for name, law in laws.items():
-        with subtests.test(name=name):
-            contact = TRUE.replace(law=law, alpha=1.0 if name == "greenwood-tripp" else 2.0)
-            _, found = friction_sensitivities(contact, rtol=1e-9)
-            for key in ("load", "roughness"):
-                assert found[key] == pytest.approx(differences(contact, key, step=1e-4, rtol=1e-9), abs=2e-5), key
-
-
 def test_a_film_whose_suction_opens_no_cavity_has_the_sensitivities_of_the_full_film():
     contact = TRUE.replace(speed="10 mm/s")
     full = friction_sensitivities(contact)[1]
@@ -208,11 +183,7 @@ MODELS = {
 
 
 def ball_with(name):
-    groups = sb.Groups(1e-2, 1e-2, 5e-4, geometry="point")
-    contact = sb.PointContact.from_groups(
-        groups, radius=0.01, modulus=1e6, viscosity=0.1, alpha=2.0, beta=0.1, boundary_friction=0.8, slide_to_roll=0.6
-    )
-    return contact.replace(**MODELS[name])
+    return ball_of(sb.Groups(1e-2, 1e-2, 5e-4, geometry="point"), **MODELS[name])
 
 
 BALLS = {
@@ -278,21 +249,11 @@ def test_sensitivities_of_a_ball_are_those_of_frictions_beside_it(edge):
 
 
 def test_asperities_of_a_ball_that_hardly_slides_stick_as_on_a_curve():
-    ball = sb.PointContact(
-        radius="9.5 mm",
-        modulus="1.6 MPa",
-        load="1.3 N",
-        viscosity="10 mPa*s",
-        entrainment_speed="1 mm/s",
-        slide_to_roll=0.004,
-        roughness="2 um",
-        alpha=2.0,
-        beta=0.05,
-        boundary_friction=0.9,
-    )
+    ball = BALL.replace(slide_to_roll=0.004)
     solution, found = friction_sensitivities(ball, rtol=1e-3)
     part = 0.5 * 0.4 * (3 - 0.4**2)
-    assert solution.friction().asperities == pytest.approx(part * 0.9 * solution.contact_load_share, rel=1e-12)
+    sticking = part * ball.boundary_friction * solution.contact_load_share
+    assert solution.friction().asperities == pytest.approx(sticking, rel=1e-12)
     ends = [sb.solve(ball.replace(slide_to_roll=0.004 * math.exp(step)), rtol=1e-3).friction().total for step in (1e-3, -1e-3)]
     assert found["slide_to_roll"] == pytest.approx(math.log(ends[0] / ends[1]) / 2e-3, rel=1e-4)
 

@@ -104,81 +104,59 @@ def test_the_fingerprint_is_that_of_the_states_and_not_of_the_comments(tmp_path)
 GROUPS = "[groups]\nload = 0.1\nroughness = 1e-3\n"
 
 
-def test_what_is_wrong_is_told_in_a_sentence_that_names_the_key(subtests, tmp_path_factory):
-    for text, sentence in [
-        ("", "is empty; a sweep file needs at least the table [vary]."),
-        (GROUPS, "the table [vary] is missing."),
-        (GROUPS + "[vary]\n", "[vary] is empty; list what varies, for example: load = ['10 N/m', '30 N/m']."),
-        (GROUPS + "[vary]\nspeed = []\n", "[vary] speed = [] is empty; list its values."),
-        (GROUPS + "[vary]\nspeed = 3\n", "[vary] speed = 3 must be a list of values, or a range as in"),
-        (GROUPS + "[vary]\nspeed = [1, -1]\n", "[vary] speed = -1 must be zero or positive."),
-        (
-            GROUPS + '[vary]\nspeed = ["1 m/s"]\n',
-            "[vary] speed = '1 m/s' is text, but a number is expected; write a bare number without quotes",
-        ),
-        (GROUPS + "[vary]\nmu0 = [1]\n", "[vary] 'mu0' cannot vary; write boundary_friction."),
-        (
-            GROUPS + "[vary]\nspede = [1]\n",
-            "[vary] 'spede' cannot vary; did you mean speed.",
-        ),
-        (GROUPS + "[vary]\nspeed = [1]\nbeta = [0]\n", "[vary] beta = 0 must be positive."),
-        (GROUPS + "[vary]\nspeed = { range = [1, 2] }\n", "[vary] speed: points = None must be a whole number from 2 to"),
-        (GROUPS + "[vary]\nspeed = { range = [2, 1], points = 3 }\n", "speed: range = [2, 1] must increase; write the lowest"),
-        (GROUPS + "[vary]\nspeed = { range = [0, 1], points = 3 }\n", "speed: range = [0, 1] begins at zero; add spacing"),
-        (GROUPS + "[vary]\nspeed = { range = 1, points = 3 }\n", "speed: range = 1 must be a list of two values"),
-        (GROUPS + "[vary]\nspeed = { range = [1, 2], points = 3, scale = 1 }\n", "speed has the unknown key 'scale'; known"),
-        (GROUPS + '[vary]\nspeed = { range = [1, 2], points = 3, spacing = "even" }\n', "spacing = 'even' must be 'log' or"),
-        (GROUPS + "[vary]\nspeed = [1]\nload = [0.1]\n", "[groups] load = 0.1 also stands in [vary]; keep one of them."),
-        ("[groups]\nload = 0.1\n[vary]\nspeed = [1]\n", "[groups] roughness is missing; add it there or to [vary]."),
-        (GROUPS + "rough = 1\n[vary]\nspeed = [1]\n", "[groups] rough = 1 is not a known key; did you mean roughness."),
-        (GROUPS + "[contact]\n[vary]\nspeed = [1]\n", "the tables [contact] and [groups] are both given"),
-        (
-            CONTACT + '[vary]\nload = [30]\nspeed = ["1 s"]\nroughness = [0]\n',
-            "[vary] speed = '1 s' is a time; expected a speed such as",
-        ),
-        (CONTACT + "[vary]\nload = [30]\nspeed = [1]\n", "[contact] roughness is missing; add a length, for example"),
-        (
-            CONTACT + "[vary]\nload=[1]\nspeed=[1]\nroughness=[1]\nyoungs_modulus=[1e6]\n",
-            "give either modulus, or youngs_modulus",
-        ),
-        (
-            CONTACT + "[vary]\nload=[1e-300]\nspeed=[1e300]\nroughness=[1]\n",
-            "the dimensionless groups of this contact",
-        ),
-        (GROUPS + "[vary]\nspeed = [1]\n[design]\npoints = 4\n", "[design] points = 4 is for random, latin-hypercube, sobol;"),
-        (GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "sobol"\n', "[design] points is missing; set how many states"),
-        (
-            GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "sobol"\npoints = 100\n',
-            "must be a power of two for kind = 'sobol'",
-        ),
-        (
-            GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "star"\n',
-            "[design] kind = 'star' must be one of 'grid', 'list', 'random'",
-        ),
-        (
-            GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "random"\npoints = 0\n',
-            "points = 0 must be a whole number from 1 to",
-        ),
-        (
-            GROUPS + '[vary]\nspeed = { range = [1, 2], points = 3 }\n[design]\nkind = "random"\npoints = 4\n',
-            "[vary] speed: points = 3 is for grids; with kind = 'random' it belongs in [design].",
-        ),
-        (
-            '[groups]\nload = 0.1\n[design]\nkind = "list"\n[vary]\nspeed = [1, 2]\nroughness = [1]\n',
-            "[vary] the lists must have the same length with kind = 'list': speed has 2, roughness has 1.",
-        ),
-        (
-            GROUPS + '[vary]\nspeed = { range = [1, 2], points = 3 }\n[design]\nkind = "list"\n',
-            "'points': 3} must be a list of values.",
-        ),
-        (
-            "[groups]\nload = 0.1\n[vary]\nspeed={range=[1,2],points=2000}\nroughness={range=[1,2],points=2000}\n",
-            "[vary] makes 4000000 states; at most 1000000 are possible in one sweep.",
-        ),
-        (GROUPS + "[vary]\nspeed = [1]\n[solver]\nrtol = 1\n", "[solver] rtol = 1 must be a number from 1e-11 to 1e-2"),
-    ]:
-        with subtests.test(text=text, sentence=sentence):
-            tmp_path = tmp_path_factory.mktemp("case")
+RANGE, KIND = "speed = {{ range = {}, points = 3 }}", '\n[design]\nkind = "{}"\n'
+# What stands behind GROUPS and [vary], and what is said.
+WRONG_VARY = [
+    ("", "[vary] is empty; list what varies, for example: load = ['10 N/m', '30 N/m']."),
+    ("speed = []", "[vary] speed = [] is empty; list its values."),
+    ("speed = 3", "[vary] speed = 3 must be a list of values, or a range as in"),
+    ("speed = [1, -1]", "[vary] speed = -1 must be zero or positive."),
+    ('speed = ["1 m/s"]', "[vary] speed = '1 m/s' is text, but a number is expected; write a bare number without quotes"),
+    ("mu0 = [1]", "[vary] 'mu0' cannot vary; write boundary_friction."),
+    ("spede = [1]", "[vary] 'spede' cannot vary; did you mean speed."),
+    ("speed = [1]\nload = [0.1]", "[groups] load = 0.1 also stands in [vary]; keep one of them."),
+    ("speed = { range = [1, 2] }", "[vary] speed: points = None must be a whole number from 2 to"),
+    (RANGE.format("[2, 1]"), "speed: range = [2, 1] must increase; write the lowest"),
+    (RANGE.format("[0, 1]"), "speed: range = [0, 1] begins at zero; add spacing"),
+    (RANGE.format("1"), "speed: range = 1 must be a list of two values"),
+    ("speed = { range = [1, 2], points = 3, scale = 1 }", "speed has the unknown key 'scale'; known"),
+    ('speed = { range = [1, 2], points = 3, spacing = "even" }', "spacing = 'even' must be 'log' or"),
+    (
+        RANGE.format("[1, 2]") + KIND.format("random") + "points = 4",
+        "[vary] speed: points = 3 is for grids; with kind = 'random'",
+    ),
+    (RANGE.format("[1, 2]") + KIND.format("list"), "'points': 3} must be a list of values."),
+    ("speed = [1]\n[design]\npoints = 4", "[design] points = 4 is for random, latin-hypercube, sobol;"),
+    ("speed = [1]" + KIND.format("sobol"), "[design] points is missing; set how many states"),
+    ("speed = [1]" + KIND.format("sobol") + "points = 100", "must be a power of two for kind = 'sobol'"),
+    ("speed = [1]" + KIND.format("star"), "[design] kind = 'star' must be one of 'grid', 'list', 'random'"),
+    ("speed = [1]" + KIND.format("random") + "points = 0", "points = 0 must be a whole number from 1 to"),
+    ("speed = [1]\n[solver]\nrtol = 1", "[solver] rtol = 1 must be a number from 1e-11 to 1e-2"),
+]
+LISTS = '[groups]\nload = 0.1\n[design]\nkind = "list"\n[vary]\nspeed = [1, 2]\nroughness = [1]\n'
+MANY = "speed={range=[1,2],points=2000}\nroughness={range=[1,2],points=2000}\n"
+WRONG_FILES = [
+    ("", "is empty; a sweep file needs at least the table [vary]."),
+    (GROUPS, "the table [vary] is missing."),
+    ("[groups]\nload = 0.1\n[vary]\nspeed = [1]\n", "[groups] roughness is missing; add it there or to [vary]."),
+    (GROUPS + "rough = 1\n[vary]\nspeed = [1]\n", "[groups] rough = 1 is not a known key; did you mean roughness."),
+    (GROUPS + "[contact]\n[vary]\nspeed = [1]\n", "the tables [contact] and [groups] are both given"),
+    (LISTS, "[vary] the lists must have the same length with kind = 'list': speed has 2, roughness has 1."),
+    (f"[groups]\nload = 0.1\n[vary]\n{MANY}", "[vary] makes 4000000 states; at most 1000000 are possible in one sweep."),
+    (
+        CONTACT + '[vary]\nload = [30]\nspeed = ["1 s"]\nroughness = [0]\n',
+        "[vary] speed = '1 s' is a time; expected a speed such",
+    ),
+    (CONTACT + "[vary]\nload = [30]\nspeed = [1]\n", "[contact] roughness is missing; add a length, for example"),
+    (CONTACT + "[vary]\nload=[1]\nspeed=[1]\nroughness=[1]\nyoungs_modulus=[1e6]\n", "give either modulus, or youngs_modulus"),
+    (CONTACT + "[vary]\nload=[1e-300]\nspeed=[1e300]\nroughness=[1]\n", "the dimensionless groups of this contact"),
+]
+
+
+def test_what_is_wrong_is_told_in_a_sentence_that_names_the_key(subtests, tmp_path):
+    cases = [*WRONG_FILES, *((f"{GROUPS}[vary]\n{text}\n", said) for text, said in WRONG_VARY)]
+    for text, sentence in cases:
+        with subtests.test(sentence):
             with pytest.raises(sb.InputError) as caught:
                 load(tmp_path, text)
             lines = str(caught.value).splitlines()
