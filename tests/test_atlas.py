@@ -1,10 +1,12 @@
 """The atlas: its error on states it was not made from, its derivatives, its limits, and what it refuses."""
 
 import math
-from pathlib import Path
+import re
 
 import numpy as np
 import pytest
+from command_line import EXAMPLES
+from fit_data import TRUE
 
 import stribeck as sb
 from evidence import atlas_build
@@ -30,7 +32,7 @@ NAMES = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap",
 
 
 def model_of(**parts):
-    return sb.load_case(Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").contact.replace(**parts).groups.model
+    return TRUE.replace(**parts).groups.model
 
 
 def random_groups(number, seed, margin=1e-3):
@@ -68,18 +70,11 @@ def test_friction_and_film_are_within_their_stated_error_of_states_it_was_not_ma
     found = certify(16, seed=60221)
     assert found.errors.shape == (16, len(quantities(TABLES[0])))
     for errors in (found.friction, found.film):
-        assert np.median(errors) < 1e-5
-        assert errors.max() < 1e-4
-    viscous, balanced, *_ = found.errors[:, FRICTION_COUNT:].T
-    assert max(viscous.max(), balanced.max()) < 1e-4
-
-
-def test_where_fluid_and_asperities_share_the_load_it_is_as_good():
-    found = certify(8, seed=141421, mixed=True)
-    assert ((found.contact_share > 0.009) & (found.contact_share < 0.991)).all()
-    assert found.speed.size == 8
-    assert np.median(found.errors) < 1e-6
-    assert np.nanmax(found.errors) < 3e-5
+        assert np.median(errors) < 1e-5 and errors.max() < 1e-4
+    assert found.errors[:, FRICTION_COUNT : FRICTION_COUNT + 2].max() < 1e-4  # viscous and balanced
+    mixed = certify(8, seed=141421, mixed=True)  # where fluid and asperities share the load
+    assert ((mixed.contact_share > 0.009) & (mixed.contact_share < 0.991)).all() and mixed.speed.size == 8
+    assert np.median(mixed.errors) < 1e-6 and np.nanmax(mixed.errors) < 3e-5
 
 
 def test_heavy_loads_on_nearly_smooth_surfaces_are_as_good():
@@ -102,35 +97,28 @@ def test_the_certificate_holds_on_five_thousand_states(mixed):
 
 
 @pytest.mark.quick
-def test_rest_is_that_of_the_solver(subtests):
-    for kappa in [1e-5, 30.0]:
-        for load in [0.3, 1.0]:
-            with subtests.test(kappa=kappa, load=load):
-                groups = sb.Groups(0.0, load, kappa * load)
-                state = sb.solve(groups, rtol=1e-8)
-                assert sb.atlas.friction(groups, boundary_friction=0.7) == 0.7
-                assert sb.atlas.contact_load_share(groups) == 1
-                assert sb.atlas.fluid_load_share(groups) == 0
-                for function in (sb.atlas.central_gap, sb.atlas.minimum_gap):
-                    right = getattr(state, function.__name__)
-                    assert abs(function(groups) - right) < 1e-5 * max(right, 1e-3 * kappa)
-                assert abs(sb.atlas.offset(groups) - state.offset) < 1e-5 * max(1, abs(state.offset))
+def test_rest_is_that_of_the_solver():
+    for kappa in (1e-5, 30.0):
+        for load in (0.3, 1.0):
+            groups = sb.Groups(0.0, load, kappa * load)
+            state = sb.solve(groups, rtol=1e-8)
+            assert sb.atlas.friction(groups, boundary_friction=0.7) == 0.7
+            assert (sb.atlas.contact_load_share(groups), sb.atlas.fluid_load_share(groups)) == (1, 0)
+            for function in (sb.atlas.central_gap, sb.atlas.minimum_gap):
+                right = getattr(state, function.__name__)
+                assert abs(function(groups) - right) < 1e-5 * max(right, 1e-3 * kappa)
+            assert abs(sb.atlas.offset(groups) - state.offset) < 1e-5 * max(1, abs(state.offset))
 
 
-def test_smooth_contacts_are_those_of_the_solver(subtests):
-    for speed in [1e-9, 3.0]:
-        with subtests.test(speed=speed):
-            groups = sb.Groups(speed, 0.4, 0.0)
-            state = sb.solve(groups, rtol=1e-7, on_failure="return")
-            for name, function in zip(NAMES, FUNCTIONS, strict=False):
-                assert function(groups) == pytest.approx(getattr(state, name), rel=2e-6)
-            for definition in DEFINITIONS:
-                assert sb.atlas.friction(groups, 1.0, 0.2, definition) == pytest.approx(
-                    state.friction(1.0, 0.2, definition).total, rel=2e-6
-                )
-
-
-def test_the_dry_contact_is_that_of_hertz():
+def test_smooth_contacts_are_those_of_the_solver_and_the_dry_one_is_that_of_hertz():
+    for speed in (1e-9, 3.0):
+        groups = sb.Groups(speed, 0.4, 0.0)
+        state = sb.solve(groups, rtol=1e-7, on_failure="return")
+        for name, function in zip(NAMES, FUNCTIONS, strict=False):
+            assert function(groups) == pytest.approx(getattr(state, name), rel=2e-6)
+        for definition in DEFINITIONS:
+            right = state.friction(1.0, 0.2, definition).total
+            assert sb.atlas.friction(groups, 1.0, 0.2, definition) == pytest.approx(right, rel=2e-6)
     groups = sb.Groups(0.0, 0.4, 0.0)
     state = sb.solve(groups)
     assert [function(groups) for function in FUNCTIONS[:6]] == [getattr(state, name) for name in NAMES]
@@ -147,12 +135,11 @@ def of_law(row, speed, load, kappa):
 
 
 def test_another_table_is_within_its_stated_error_of_states_it_was_not_made_from(subtests):
-    for row in [row for row in TABLES[1:] if row.geometry == "line"]:
-        with subtests.test(row=row):
+    for row in (row for row in TABLES[1:] if row.geometry == "line"):
+        with subtests.test(row.name):
             found = certify(4, seed=77, mixed=True, row=row)
             assert found.speed.size == 4
-            assert found.friction.max() < row.error
-            assert np.median(found.friction) < 1e-4
+            assert found.friction.max() < row.error and np.median(found.friction) < 1e-4
             assert found.film.max() < 3 * row.error
 
 
@@ -168,25 +155,17 @@ def test_a_table_of_persson_serves_its_spectrum_and_refuses_others():
         sb.atlas.friction(other)
 
 
-def test_seals_with_the_law_of_persson_are_read_off_their_table():
-    seal = sb.load_case(Path(__file__).parents[1] / "examples" / "rod_seal.toml").contact.replace(cavitation="none")
-    read = sb.stribeck_curve(seal, speed=(1e-3, 1.0), points=5, method="atlas")
-    solved = sb.stribeck_curve(seal, speed=(1e-3, 1.0), points=5, rtol=1e-5)
-    assert sb.atlas.for_groups(read.groups).name == "line-persson"
-    assert read.rtol == sb.atlas.for_groups(read.groups).error
-    assert (np.abs(read.friction - solved.friction) < read.friction.error).all()
-
-
-def test_films_that_end_are_read_off_a_table_of_their_own():
-    contact = sb.load_case(Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").contact.replace(cavitation="exit")
-    ends = {"speed": (1e-3, 1.0), "points": 7}
-    read, solved = (sb.stribeck_curve(contact, **ends, rtol=1e-6, method=method) for method in ("atlas", "solver"))
-    assert sb.atlas.for_groups(read.groups).name == "line-exit"
-    assert read.rtol == sb.atlas.for_groups(read.groups).error
-    assert (np.abs(read.friction - solved.friction) < read.friction.error).all()
-    assert read.regimes == solved.regimes
-    full = sb.stribeck_curve(contact.replace(cavitation="none"), **ends, method="atlas")
-    assert read.minimum.friction < 0.99 * full.minimum.friction
+def test_seals_and_films_that_end_are_read_off_tables_of_their_own(subtests):
+    seal = sb.load_case(EXAMPLES / "rod_seal.toml").contact.replace(cavitation="none")
+    ends = {"speed": (1e-3, 1.0), "points": 5}
+    for name, contact in (("line-persson", seal), ("line-exit", TRUE.replace(cavitation="exit"))):
+        with subtests.test(name):
+            read, solved = (sb.stribeck_curve(contact, **ends, rtol=1e-5, method=method) for method in ("atlas", "solver"))
+            row = sb.atlas.for_groups(read.groups)
+            assert (row.name, row.error) == (name, read.rtol)
+            assert (np.abs(read.friction - solved.friction) < read.friction.error).all()
+            assert read.regimes == solved.regimes
+    assert read.minimum.friction < 0.99 * sb.stribeck_curve(TRUE, **ends, method="atlas").minimum.friction
 
 
 @pytest.mark.quick
@@ -252,57 +231,44 @@ def test_arrays_broadcast_and_order_does_not_matter():
     assert sb.atlas.friction(sb.Groups(np.empty(0), 0.1, 1e-3)).shape == (0,)
 
 
-def test_outside_the_box_it_refuses(subtests):
-    for function in [*FUNCTIONS, sb.atlas.friction_derivatives]:
-        for speed, load, kappa, words in [
-            (1e-13, 0.1, 1e-3, "speed has the value 1e-13; the atlas covers 1e-12 to 1e+06 and 0"),
-            (2e6, 0.1, 1e-3, "speed has the value 2e.06"),
-            (1e-3, 2.0, 1e-3, "load has the value 2; the atlas covers 1e-06 to 1. Use solve"),
-            (1e-3, 1e-7, 1e-3, "load has the value 1e-07"),
-            (1e-3, 0.1, 1e-7, "relative_roughness has the value 1e-07; the atlas covers 1e-06 to 100 and 0"),
-            (1e-3, 0.1, 200.0, "relative_roughness has the value 200"),
-        ]:
-            with subtests.test(function=function, speed=speed, load=load, kappa=kappa, words=words):
-                inside = sb.Groups(1e-3, 0.1, 1e-4)
-                function(inside)
-                with pytest.raises(sb.InputError, match=words.replace("+", r"\+")):
-                    function(sb.Groups(speed, load, kappa * load))
-                with pytest.raises(sb.InputError, match=words.replace("+", r"\+")):
-                    function(sb.Groups(np.array([1e-3, speed]), np.array([0.1, load]), np.array([1e-4, kappa * load])))
+OUTSIDE = [
+    (1e-13, 0.1, 1e-3, "speed has the value 1e-13; the atlas covers 1e-12 to 1e+06 and 0"),
+    (2e6, 0.1, 1e-3, "speed has the value 2e+06"),
+    (1e-3, 2.0, 1e-3, "load has the value 2; the atlas covers 1e-06 to 1. Use solve"),
+    (1e-3, 1e-7, 1e-3, "load has the value 1e-07"),
+    (1e-3, 0.1, 1e-7, "relative_roughness has the value 1e-07; the atlas covers 1e-06 to 100 and 0"),
+    (1e-3, 0.1, 200.0, "relative_roughness has the value 200"),
+]
 
 
-def test_the_flux_gap_that_it_does_not_hold_is_refused():
+def test_outside_the_box_and_wrong_arguments_it_refuses():
+    for function in (*FUNCTIONS, sb.atlas.friction_derivatives):
+        for speed, load, kappa, words in OUTSIDE:
+            many = sb.Groups(np.array([1e-3, speed]), np.array([0.1, load]), np.array([1e-4, kappa * load]))
+            for groups in (sb.Groups(speed, load, kappa * load), many):
+                with pytest.raises(sb.InputError, match=re.escape(words)):
+                    function(groups)
     with pytest.raises(sb.InputError, match="load has the value 0.995 at speed 0"):
         sb.atlas.flux_gap(sb.Groups(0.0, 0.995, 1e-5))
+    for wrong in ({"definition": "total"}, {"beta": 0.0}, {"boundary_friction": -1.0}):
+        with pytest.raises(sb.InputError):
+            sb.atlas.friction(sb.Groups(1e-3, 0.1, 1e-4), **wrong)
 
 
 def test_the_ends_of_the_box_belong_to_it():
-    for speed in (1e-12, 1e6):
-        for load in (1e-6, 1.0):
-            for kappa in (1e-6, 1e2):
-                groups = sb.Groups(speed, load, kappa * load)
-                assert np.isfinite([function(groups) for function in FUNCTIONS]).all()
-
-
-def test_wrong_arguments_are_refused(subtests):
-    for wrong in [{"definition": "total"}, {"beta": 0.0}, {"boundary_friction": -1.0}]:
-        with subtests.test(wrong=wrong):
-            with pytest.raises(sb.InputError):
-                sb.atlas.friction(sb.Groups(1e-3, 0.1, 1e-4), **wrong)
+    speed, load, kappa = map(np.ravel, np.meshgrid([1e-12, 1e6], [1e-6, 1.0], [1e-6, 1e2]))
+    assert np.isfinite([function(sb.Groups(speed, load, kappa * load)) for function in FUNCTIONS]).all()
 
 
 # --- the table ---
 
 
-def test_a_table_is_small_and_says_where_it_comes_from(subtests):
+def test_a_table_is_small_and_says_where_it_comes_from():
     for row in TABLES:
-        with subtests.test(row=row):
-            path = atlas_table.files("stribeck.atlas").joinpath(row.file)
-            assert path.stat().st_size < 5e6
-            about = sb.atlas.info(row.name)
-            assert about["states"] > 1_000
-            assert (about["geometry"], about["law"], about["box"]) == (row.geometry, row.law, row.box)
-            assert len(about["solver_hash"]) == 64
+        assert atlas_table.files("stribeck.atlas").joinpath(row.file).stat().st_size < 5e6
+        about = sb.atlas.info(row.name)
+        assert about["states"] > 1_000 and len(about["solver_hash"]) == 64
+        assert (about["geometry"], about["law"], about["box"]) == (row.geometry, row.law, row.box)
 
 
 def test_the_hash_of_the_solver_holds_all_modules_that_make_numbers():
@@ -338,18 +304,12 @@ def test_a_build_goes_on_with_what_is_kept(tmp_path):
 # --- curves, diagrams and sensitivities read off it ---
 
 
-@pytest.fixture(scope="module")
-def contact():
-    return sb.load_case(Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").contact
-
-
 @pytest.mark.quick
-def test_a_curve_read_off_it_is_the_solved_one(contact):
-    solved = sb.stribeck_curve(contact, points=41)
-    read = sb.stribeck_curve(contact, points=41, method="atlas")
-    assert len(read) == 41
-    assert np.allclose(read.values, solved.values, rtol=1e-5)
-    solved = sb.stribeck_curve(contact, speed=read.values)
+def test_a_curve_read_off_it_is_the_solved_one():
+    solved = sb.stribeck_curve(TRUE, points=41)
+    read = sb.stribeck_curve(TRUE, points=41, method="atlas")
+    assert len(read) == 41 and np.allclose(read.values, solved.values, rtol=1e-5)
+    solved = sb.stribeck_curve(TRUE, speed=read.values)
     for part in ("total", "fluid", "asperities"):
         assert np.allclose(getattr(read.friction, part), getattr(solved.friction, part), rtol=1e-4)
     assert np.allclose(read.observable("minimum_gap"), solved.observable("minimum_gap"), rtol=1e-4)
@@ -359,19 +319,12 @@ def test_a_curve_read_off_it_is_the_solved_one(contact):
     for mine, theirs in zip(read.transitions, solved.transitions, strict=True):
         assert mine.value == pytest.approx(theirs.value, rel=1e-3)
         assert mine.friction == pytest.approx(theirs.friction, rel=1e-4)
-
-
-def test_a_curve_over_load_falls_where_the_solved_one_does(contact):
-    slope = sb.stribeck_curve(contact, load=(5, 100), points=21, method="atlas")
-    solved = sb.stribeck_curve(contact, load=(5, 100), points=21)
-    assert np.allclose(slope.friction, solved.friction, rtol=1e-4)
-
-
-def test_a_curve_knows_what_it_does_not_have(contact):
+    over_load, solved = (sb.stribeck_curve(TRUE, load=(5, 100), points=11, method=each) for each in ("atlas", "solver"))
+    assert np.allclose(over_load.friction, solved.friction, rtol=1e-4)
     with pytest.raises(sb.InputError, match="the atlas has contact_load_share"):
-        sb.stribeck_curve(contact, points=3, method="atlas").observable("error_estimate")
+        read.observable("error_estimate")
     with pytest.raises(sb.InputError, match="must be 'solver' or 'atlas'"):
-        sb.stribeck_curve(contact, points=3, method="table")
+        sb.stribeck_curve(TRUE, points=3, method="table")
 
 
 def test_a_phase_diagram_read_off_it_is_the_solved_one():

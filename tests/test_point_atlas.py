@@ -65,12 +65,14 @@ def test_other_models_of_balls_are_refused_and_so_are_thin_smooth_films():
 
 @pytest.mark.quick
 def test_what_balls_do_not_have_is_refused_by_name():
-    with pytest.raises(sb.InputError, match="has no flux_gap"):
-        sb.atlas.flux_gap(of_ball(1e-3, 0.1, 0.01))
-    with pytest.raises(sb.InputError, match="wetted_radius = 50 belongs to a ball"):
-        sb.atlas.friction(sb.Groups(1e-3, 0.1, 1e-3), wetted_radius=50)
-    with pytest.raises(sb.InputError, match="must be above 1"):
-        sb.atlas.friction(of_ball(1e-3, 0.1, 0.01), wetted_radius=0.5)
+    ball, line = of_ball(1e-3, 0.1, 0.01), sb.Groups(1e-3, 0.1, 1e-3)
+    for said, ask in (
+        ("has no flux_gap", lambda: sb.atlas.flux_gap(ball)),
+        ("wetted_radius = 50 belongs to a ball", lambda: sb.atlas.friction(line, wetted_radius=50)),
+        ("must be above 1", lambda: sb.atlas.friction(ball, wetted_radius=0.5)),
+    ):
+        with pytest.raises(sb.InputError, match=said):
+            ask()
 
 
 @pytest.mark.quick
@@ -126,29 +128,21 @@ def test_friction_of_a_contact_is_the_solved_one_whatever_its_liquid_and_motion(
                 assert found == pytest.approx(right.total, rel=BALL.error)
 
 
-def test_a_curve_read_off_it_is_the_solved_one():
-    contact, speeds = ball(wetted_radius=3e-3), [ball(s).speed for s in (1e-3, 1e-2, 0.1)]
-    read, exact = (sb.stribeck_curve(contact, speed=speeds, rtol=1e-4, method=method) for method in ("atlas", "solver"))
-    assert (np.abs(read.friction - exact.friction) < read.friction.error).all()
-    assert np.allclose(read.friction.fluid, exact.friction.fluid, rtol=3e-3)
-    assert np.allclose(read.observable("central_gap"), exact.observable("central_gap"), rtol=3e-3)
-    assert read.regimes == exact.regimes
+def test_curves_read_off_it_are_the_solved_ones_also_of_films_that_break(subtests):
+    for row, cavitation, places in ((BALL, "none", (1e-3, 1e-2, 0.1)), (EXIT, "exit", (5e-3, 6e-3, 7e-3))):
+        with subtests.test(cavitation):
+            contact, speeds = ball(wetted_radius=3e-3, cavitation=cavitation), [ball(s).speed for s in places]
+            read, exact = (sb.stribeck_curve(contact, speed=speeds, rtol=1e-4, method=each) for each in ("atlas", "solver"))
+            assert sb.atlas.for_groups(read.groups) is row and read.rtol == row.error
+            assert (np.abs(read.friction - exact.friction) < read.friction.error + exact.friction.error).all()
+            assert np.allclose(read.friction.fluid, exact.friction.fluid, rtol=3e-3)
+            assert np.allclose(read.observable("central_gap"), exact.observable("central_gap"), rtol=3e-3)
+            assert read.regimes == exact.regimes
     with pytest.raises(sb.InputError, match="flux_gap"):
         read.observable("flux_gap")
 
 
 # --- films that break ---
-
-
-def test_balls_whose_film_breaks_are_read_off_a_table_of_their_own():
-    contact, speeds = ball(wetted_radius=3e-3, cavitation="exit"), [ball(s).speed for s in (5e-3, 6e-3, 7e-3)]
-    read, exact = (sb.stribeck_curve(contact, speed=speeds, rtol=1e-4, method=method) for method in ("atlas", "solver"))
-    assert sb.atlas.for_groups(read.groups) is EXIT
-    assert read.rtol == EXIT.error
-    assert (np.abs(read.friction - exact.friction) < read.friction.error + exact.friction.error).all()
-    assert np.allclose(read.friction.fluid, exact.friction.fluid, rtol=3e-3)
-    assert np.allclose(read.observable("central_gap"), exact.observable("central_gap"), rtol=3e-3)
-    assert read.regimes == exact.regimes
 
 
 @pytest.mark.quick

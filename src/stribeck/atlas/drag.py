@@ -15,8 +15,6 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Geometry
 from stribeck.solids import hertz
 
-__all__ = ["DRAG", "Drag"]
-
 # An observable, and if wanted its derivatives by ln(speed), ln(load) and ln(roughness), shape (3, n).
 Part = tuple[Array, Array | None]
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.atlas.lookup import Value, contact_share, inputs_for, read_friction, reshape_to_groups, slopes_of
+from stribeck.atlas.lookup import Value, contact_share, documented, inputs_for, read_friction, reshape_to_groups, slopes_of
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.geometries import LINE
@@ -18,16 +18,8 @@ from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, checked_kind, show
 
-__all__ = [
-    "friction",
-    "friction_derivatives",
-    "friction_parts",
-    "friction_terms",
-    "shares_and_friction",
-    "viscous_friction",
-]
 
-
+@documented("Friction coefficient [-].")
 @answers_typos
 def friction(
     groups: Groups,
@@ -42,29 +34,6 @@ def friction(
 
     .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \mu_f
 
-    Parameters
-    ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-    boundary_friction, beta : float
-        Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"balanced", "published"}
-        Definition of the viscous friction, theory.md, section 6.
-    slide_to_roll : float
-        Slide-to-roll ratio of a ball [-].
-    wetted_radius : float or ndarray
-        Radius of the disc of liquid around a ball, above 1 [a]; infinite where the whole ball is immersed.
-
-    Returns
-    -------
-    float or ndarray
-        Friction coefficient [-].
-
-    Raises
-    ------
-    InputError
-        If a state is outside the box of its table, or an argument is wrong.
-
     Notes
     -----
     Both parts are positive for surfaces of which one rests, so that its relative error is at most the larger of theirs.
@@ -75,6 +44,7 @@ def friction(
     return reshape_to_groups(groups, boundary_friction * _sliding_factor(groups, inputs) * contact + viscous)
 
 
+@documented("Friction coefficient [-]; zero at rest.")
 def viscous_friction(
     groups: Groups,
     beta: float = 1.0,
@@ -83,33 +53,15 @@ def viscous_friction(
     slide_to_roll: float = PURE_SLIDING,
     wetted_radius: float | Array = math.inf,
 ) -> Value:
-    """Return the part of the friction coefficient that the fluid causes.
-
-    Parameters
-    ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-    beta : float
-        Coefficient of the contact law [-].
-    definition : {"balanced", "published"}
-        Definition of the viscous friction, theory.md, section 6.
-    slide_to_roll, wetted_radius : float
-        As in :func:`friction`.
-
-    Returns
-    -------
-    float or ndarray
-        Friction coefficient [-]; zero at rest.
-
-    Raises
-    ------
-    InputError
-        If a state is outside the box of its table, or an argument is wrong.
-    """
+    """Return the part of the friction coefficient that the fluid causes."""
     inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
     return reshape_to_groups(groups, friction_terms(groups, inputs, check_definition(definition))[1])
 
 
+@documented(
+    "ndarray, shape (3, ...): By ln(speed), ln(load) and ln(roughness), the other two groups held [-]; the last is zero for "
+    "smooth contacts."
+)
 @answers_typos
 def friction_derivatives(
     groups: Groups,
@@ -125,30 +77,10 @@ def friction_derivatives(
     .. math:: \frac{\partial \mu}{\partial \ln \lambda}, \quad \frac{\partial \mu}{\partial \ln \bar F_N}, \quad
         \frac{\partial \mu}{\partial \ln \bar h_\mathrm{rms}}
 
-    Parameters
-    ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-    boundary_friction, beta : float
-        Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"balanced", "published"}
-        Definition of the viscous friction, theory.md, section 6.
-    slide_to_roll, wetted_radius : float
-        As in :func:`friction`; they are held.
-
-    Returns
-    -------
-    ndarray, shape (3, ...)
-        By ln(speed), ln(load) and ln(roughness), the other two groups held [-]; the last is zero for smooth contacts.
-
-    Raises
-    ------
-    InputError
-        If a state is outside the box of its table, or an argument is wrong.
-
     Notes
     -----
-    Exact derivatives of :func:`friction`, shown by ``test_atlas.py``; zero at rest.
+    Exact derivatives of :func:`friction`, at held ``slide_to_roll`` and ``wetted_radius``, shown by ``test_atlas.py``; zero at
+    rest.
     """
     boundary_friction = LINE.quantities["boundary_friction"].checked(boundary_friction)
     inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
@@ -157,28 +89,12 @@ def friction_derivatives(
     return (boundary_friction * _sliding_factor(groups, inputs) * contact + viscous).reshape(3, *groups.shape)
 
 
+@documented(
+    "ndarray, shapes (1 + parts, ...) and (1 + parts, 3, ...): Contact load share and the observables that friction takes, "
+    "of cylinders the viscous friction for beta = 1 [-]; their derivatives by ln(speed), ln(load) and ln(roughness)."
+)
 def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple[Array, Array]:
-    r"""Return what the friction is made of, without the coefficients that it takes beside, and the derivatives of each.
-
-    Parameters
-    ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-    definition : {"balanced", "published"}
-        Definition of the viscous friction, theory.md, section 6.
-
-    Returns
-    -------
-    ndarray, shape (1 + parts, ...)
-        Contact load share and the observables that :data:`stribeck.contacts.friction_rules.RULES` names, of
-        cylinders the viscous friction for beta = 1 [-].
-    ndarray, shape (1 + parts, 3, ...)
-        Their derivatives by ln(speed), ln(load) and ln(roughness), the other two groups held [-].
-
-    Raises
-    ------
-    InputError
-        If a state is outside the box of its table, or the definition unknown.
+    """Return what the friction is made of, without the coefficients that it takes beside, and the derivatives of each.
 
     Notes
     -----
@@ -194,26 +110,9 @@ def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple
 
 
 def friction_terms(groups: Groups, inputs: Mapping[str, Any], definition: Definition) -> tuple[Array, Array]:
-    """Return contact load share and viscous friction of states, by unchecked inputs that may be arrays and bring derivatives.
+    """Return contact load share and viscous friction of the flattened states, by inputs that may be arrays with derivatives.
 
-    Parameters
-    ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-    inputs : mapping
-        What the friction rule of the geometry takes, by name, each a number or an array of the shape of the groups.
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-
-    Returns
-    -------
-    tuple of ndarray, each of shape (n,)
-        Both of the flattened states [-].
-
-    Raises
-    ------
-    InputError
-        If a state is outside the box of its table.
+    The ``inputs`` are what the friction rule of the geometry takes, by name; they are not checked.
     """
     checked_kind("groups", groups, Groups, "Groups(speed, load, roughness)")
     reading = read_friction(groups, check_definition(definition))
@@ -221,6 +120,10 @@ def friction_terms(groups: Groups, inputs: Mapping[str, Any], definition: Defini
     return reading.contact, RULES[groups.geometry].viscous(reading.parts, reading.speed, reading.load, arrays, definition)
 
 
+@documented(
+    "ndarray, shape (4, ...): Load shares of fluid and asperities, :func:`viscous_friction`, and the derivative of "
+    ":func:`friction` by ln(speed) [-]."
+)
 @answers_typos
 def shares_and_friction(
     groups: Groups,
@@ -231,30 +134,7 @@ def shares_and_friction(
     slide_to_roll: float = PURE_SLIDING,
     wetted_radius: float | Array = math.inf,
 ) -> Array:
-    """Return at once what tells the regimes apart, at the cost of one of its parts.
-
-    Parameters
-    ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-    boundary_friction, beta : float
-        Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"balanced", "published"}
-        Definition of the viscous friction, theory.md, section 6.
-    slide_to_roll, wetted_radius : float
-        As in :func:`friction`.
-
-    Returns
-    -------
-    ndarray, shape (4, ...)
-        Load shares of fluid and asperities, :func:`viscous_friction`, and the derivative of :func:`friction`
-        by ln(speed) [-].
-
-    Raises
-    ------
-    InputError
-        If a state is outside the box of its table, or an argument is wrong.
-    """
+    """Return at once what tells the regimes apart, at the cost of one of its parts."""
     boundary_friction = LINE.quantities["boundary_friction"].checked(boundary_friction)
     inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
     reading = read_friction(groups, check_definition(definition), slopes=1)

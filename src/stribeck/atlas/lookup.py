@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any, NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -19,28 +19,40 @@ from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.numerics.dual import Dual, slope_of
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.docstrings import complete_docstring
 from stribeck.quantities.units import InputError
-
-__all__ = [
-    "CENTRAL",
-    "DEFLECTION",
-    "FLUX",
-    "MINIMUM",
-    "ODDS",
-    "Value",
-    "contact_share",
-    "flat",
-    "inputs_for",
-    "look_up",
-    "read_friction",
-    "reshape_to_groups",
-    "slopes_of",
-]
 
 Value = float | Array
 
 # Names of functions in the tables
 ODDS, CENTRAL, MINIMUM, FLUX, DEFLECTION = "log_odds", "central_gap", "minimum_gap", "flux_gap", "deflection"
+
+# What docstrings say of the arguments of all functions of states.
+ARGUMENTS = {
+    "groups": "Groups\n    The states [-]; arrays broadcast.",
+    "boundary_friction": "float\n    Friction coefficient of the dry contact [-].",
+    "beta": "float\n    Coefficient of the contact law [-].",
+    "definition": """{"balanced", "published"}
+    Definition of the viscous friction, theory.md, section 6.""",
+    "slide_to_roll": "float\n    Slide-to-roll ratio of a ball [-].",
+    "wetted_radius": """float or ndarray
+    Radius of the disc of liquid around a ball, above 1 [a]; infinite where the whole ball is immersed.""",
+}
+RAISES = "InputError\n    If a state is outside the box of its table, or an argument is wrong."
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def documented(returns: str) -> Callable[[Function], Function]:
+    """Return a decorator that completes the docstring of a function of states."""
+
+    def complete(function: Function) -> Function:
+        kind, _, meaning = returns.rpartition(": ")
+        value = f"{kind or 'float or ndarray'}\n    {meaning}"
+        function.__doc__ = complete_docstring(function, ARGUMENTS, value, RAISES)
+        return function
+
+    return complete
 
 
 class Lookup(NamedTuple):

@@ -11,137 +11,56 @@ from typing import Any
 
 import numpy as np
 
-from stribeck.atlas.lookup import CENTRAL, DEFLECTION, FLUX, MINIMUM, ODDS, Value, contact_share, look_up, reshape_to_groups
+from stribeck.atlas.lookup import (
+    CENTRAL,
+    DEFLECTION,
+    FLUX,
+    MINIMUM,
+    ODDS,
+    Value,
+    contact_share,
+    documented,
+    look_up,
+    reshape_to_groups,
+)
 from stribeck.atlas.tables import TABLES
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["central_gap", "contact_load_share", "fluid_load_share", "flux_gap", "info", "minimum_gap", "offset"]
 
-
+@documented("Load share [-], 1 at rest, 0 for smooth contacts and where it is below 1e-13.")
 def contact_load_share(groups: Groups) -> Value:
-    """Return the part of the load on the asperities.
-
-    Parameters
-    ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Load share [-]: 1 at rest, 0 for smooth contacts and where it is below 1e-13.
-
-    Raises
-    ------
-    InputError
-        If a state is outside the box of its table.
-    """
+    """Return the part of the load on the asperities."""
     return reshape_to_groups(groups, contact_share(look_up(groups, (ODDS,)).values.values[0]))
 
 
+@documented("Load share [-], 0 at rest, 1 for smooth contacts.")
 def fluid_load_share(groups: Groups) -> Value:
-    """Return the part of the load on the fluid, without loss of digits where it is small.
-
-    Parameters
-    ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Load share [-]: 0 at rest, 1 for smooth contacts.
-
-    Raises
-    ------
-    InputError
-        If a state is outside the box of its table.
-    """
+    """Return the part of the load on the fluid, without loss of digits where it is small."""
     return reshape_to_groups(groups, contact_share(-look_up(groups, (ODDS,)).values.values[0]))
 
 
+@documented("Gap [u_Hz].")
 def central_gap(groups: Groups) -> Value:
-    """Return the gap at the centre.
-
-    Parameters
-    ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
-
-    Raises
-    ------
-    InputError
-        If a state is outside the box of its table.
-    """
+    """Return the gap at the centre."""
     return _gap(groups, CENTRAL)
 
 
+@documented("Gap [u_Hz].")
 def minimum_gap(groups: Groups) -> Value:
-    """Return the minimum gap.
-
-    Parameters
-    ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
-
-    Raises
-    ------
-    InputError
-        If a state is outside the box of its table.
-    """
+    """Return the minimum gap."""
     return _gap(groups, MINIMUM)
 
 
+@documented("Gap [u_Hz].")
 def flux_gap(groups: Groups) -> Value:
-    """Return the gap that carries the flux, h*.
-
-    Parameters
-    ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
-
-    Raises
-    ------
-    InputError
-        If a state is outside the box of its table, or it is a ball, whose film has no one flux.
-    """
+    """Return the gap that carries the flux, h*; a ball, whose film has no one flux, is refused."""
     return _gap(groups, FLUX)
 
 
+@documented("Offset [u_Hz], of cylinders in the gauge ln(abs(x-y)/a).")
 def offset(groups: Groups) -> Value:
-    """Return the height of the apex over the undeformed surface.
-
-    Parameters
-    ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Offset [u_Hz], of cylinders in the gauge ln(abs(x-y)/a).
-
-    Raises
-    ------
-    InputError
-        If a state is outside the box of its table.
-    """
+    """Return the height of the apex over the undeformed surface."""
     values = look_up(groups, (CENTRAL, DEFLECTION)).values
     return reshape_to_groups(groups, np.exp(values.values[0]) + values.values[1])
 

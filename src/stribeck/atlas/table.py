@@ -50,9 +50,8 @@ CHUNK_STATES = 1024  # States that are summed at once: their polynomials then fi
 class Values:
     """Values of functions of a table at many states."""
 
-    values: Array  # The wanted of :data:`LINE_FUNCTIONS`
+    values: Array  # The wanted of :data:`LINE_FUNCTIONS`; where no asperities are left the first is infinite
     slopes: Array | None  # Derivatives of the values by ln(speed), and by -ln(load) and ln(relative roughness), if wanted
-    film: Array  # Where no asperities are left: there the first function, if wanted, is infinite
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +151,7 @@ class Table:
             by_state[:, :, film] = 0.0
             by_state[0][:, film] = found[1][:, film]
         self._add_power_of_speed(functions, found[0], by_state, log_speed, (block % SEGMENTS == 0) & ~film)
-        return Values(found[0], by_state, film)
+        return Values(found[0], by_state)
 
     def _sums(self, functions: tuple[int, ...], block: Indices, coordinates: Array, slopes: int) -> Array:
         """Return the sums of :meth:`Block.sum` for states in any order; those on no block are left open."""

@@ -24,9 +24,7 @@ from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.groups import Geometry, Groups
 from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.quantities.units import InputError, checked_kind, show
-
-__all__ = ["BOX", "BOX_RTOL", "TABLES", "Box", "TableRow", "covers", "for_groups", "holds_for", "table_for"]
+from stribeck.quantities.units import InputError, checked_kind
 
 Box = dict[str, tuple[float, float]]
 
@@ -165,21 +163,9 @@ TABLES = (
 
 
 def for_groups(groups: Groups) -> TableRow | None:
-    """Return the table that holds for the geometry, model and contact law of groups, wherever in its box they lie.
+    """Return the table that holds for the geometry, model and contact law of groups, wherever in its box they lie, or None.
 
-    Parameters
-    ----------
-    groups : Groups
-        The states [-].
-
-    Returns
-    -------
-    TableRow or None
-        Its box, stated error and name; None where the atlas has no such table.
-
-    Notes
-    -----
-    Smooth contacts have no law. :func:`covers` tells which of the states lie in the box.
+    It has a name, a box and a stated error.  Smooth contacts have no law; :func:`covers` tells which states lie in the box.
     """
     checked_kind("groups", groups, Groups, "Groups(speed, load, roughness)")
     for row in TABLES:
@@ -190,8 +176,6 @@ def for_groups(groups: Groups) -> TableRow | None:
 
 def table_for(groups: Groups) -> TableRow:
     """Return the table that holds for groups."""
-    if not isinstance(groups, Groups):
-        raise InputError(f"groups = {show(groups)}; it must be Groups(speed, load, roughness).")
     row = for_groups(groups)
     if row is not None:
         return row
@@ -212,17 +196,9 @@ def table_for(groups: Groups) -> TableRow:
 
 
 def covers(groups: Groups) -> Flags:
-    """Return whether the atlas covers states: a table for their geometry, model and contact law, with them in its box.
+    """Return of each state whether the atlas covers it: a table for its geometry, model and contact law, with it in its box.
 
-    Parameters
-    ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-
-    Returns
-    -------
-    ndarray of bool
-        Of the shape of the groups. The flux gap of heavy, nearly smooth contacts at rest is missing nevertheless.
+    The flux gap of heavy, nearly smooth contacts at rest is missing nevertheless.
     """
     row = for_groups(groups)
     if row is not None:
@@ -235,16 +211,5 @@ def covers(groups: Groups) -> Flags:
 
 
 def holds_for(law: AsperityLaw | None) -> bool:
-    """Return whether the first table, of cylinders in a full film, holds for the rough states of a contact law.
-
-    Parameters
-    ----------
-    law : AsperityLaw or None
-        The law; None is the exponential one.
-
-    Returns
-    -------
-    bool
-        True for the exponential law. :func:`for_groups` asks all tables.
-    """
+    """Return whether the first table, of cylinders in a full film, holds for rough states of a law: the exponential one."""
     return is_exponential(law)
