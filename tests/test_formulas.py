@@ -32,59 +32,12 @@ SPAN = {"speed": (1e-10, 1e8), "load": (1e-8, 0.9), "relative_roughness": (1e-6,
 DEFAULT = {"speed": (1e-9, 1e4), "load": (1e-4, 0.7), "relative_roughness": (1e-4, 1e-1)}
 """Where states are drawn, evenly in the logarithm, and where they lie as far as no limit says anything about it."""
 
-SCANNED = {
-    "hertz.pressure": 0.0453,
-    "hertz.gap": 0.000712,
-    "hertz.offset": 0.000882,
-    "large_deformation.central_gap_large": 0.015,
-    "large_deformation.flux_gap_large": 0.0148,
-    "large_deformation.minimum_gap_large": 0.0117,
-    "large_deformation.friction_large": 0.0827,
-    "small_deformation.central_gap_small": 0.0201,
-    "small_deformation.flux_gap_small": 0.002,
-    "small_deformation.gap_small": 0.0168,
-    "small_deformation.pressure_small": 0.091,
-    "small_deformation.friction_small": 0.000941,
-    "hydrodynamic.central_gap": 0.00266,
-    "hydrodynamic.flux_gap": 0.000395,
-    "hydrodynamic.friction": 0.0705,
-    "hydrodynamic.friction_uniform": 0.00225,
-    "film_layers.gap_inlet": 0.0369,
-    "film_layers.gap_outlet": 0.0502,
-    "film_layers.fluid_pressure_inlet": 0.0888,
-    "film_layers.fluid_pressure_outlet": 0.0915,
-    "rest.gap": 0.0233,
-    "rest.offset": 5.85e-05,
-    "rest.central_gap": 0.0277,
-    "rest.gap_small_indentation": 0.0102,
-    "rest.contact_pressure_small_indentation": 0.0173,
-    "rest.central_gap_small_indentation": 0.00859,
-    "rest.offset_small_indentation": 0.000252,
-    "edge_layer.gap": 0.024,
-    "edge_layer.contact_pressure": 0.0665,
-    "perturbation.flux_gap": 0.00839,
-    "perturbation.fluid_pressure_first": 0.0645,
-    "perturbation.gap_first": 0.0503,
-    "perturbation.fluid_pressure_second": 0.0635,
-    "boundary.fluid_load_share": 0.0632,
-    "boundary.contact_load_share": 0.0125,
-    "boundary.viscous_friction": 0.0689,
-    "boundary.friction": 0.0142,
-    "wedge.contact_load_share": 0.0163,
-    "mixed.contact_load_share": 0.112,
-    "mixed.friction": 0.0936,
-    "transitions.speed_boundary_to_mixed": 0.716,
-    "transitions.separation_at_minimum": 0.0425,
-    "transitions.speed_at_minimum": 0.067,
-    "transitions.friction_at_minimum": 0.0478,
-    "load_sharing.speed_at_fluid_share": 0.0759,
-    "load_sharing.contact_load_share": 0.0272,
-    "uniform.viscous_friction": 0.606,
-    "uniform.friction": 0.0709,
-}
-"""Largest relative error of 60 random states and of the corners of the range (12 random ones where each is a curve),
-rounded up; of formulas with a range in beta/mu0 that of the atlas over all of it, as in the table of validity.md, but of
-``mixed.friction`` that of the corner of its range, which the speeds of the atlas's scan do not meet."""
+TABLE = json.loads((Path(__file__).parent / "data" / "formulas.json").read_text(encoding="utf-8"))
+"""Range of each formula, and of those of the line the largest relative error of a dense scan.
+
+It is that of 60 random states and of the corners of the range (12 random ones where each is a curve), rounded up; of formulas
+with a range in beta/mu0 that of the atlas over all of it, as on validity.md, but of ``mixed.friction`` that of the corner of
+its range, which the speeds of the atlas's scan do not meet."""
 
 LINE = [formula for formula in FORMULAS if formula.geometry == "line"]
 # Those of the ball are judged in test_ball_formulas.py.
@@ -312,12 +265,13 @@ def test_the_scan_over_coefficients_knows_every_law_that_has_both():
 
 
 def test_the_stated_error_of_a_formula_is_not_much_larger_than_what_a_dense_scan_found():
-    stated = {formula.name: (SCANNED[formula.name], formula.worst) for formula in LINE}
+    stated = {formula.name: (TABLE[formula.name]["scanned"], formula.worst) for formula in LINE}
     assert {name: pair for name, pair in stated.items() if not pair[0] / 1.02 <= pair[1] <= 3 * pair[0]} == {}
 
 
-def test_the_scan_knows_the_formulas_of_the_table_and_no_other():
-    assert set(SCANNED) == {formula.name for formula in LINE}
+def test_every_formula_says_the_range_for_which_its_error_was_scanned():
+    """A range that is wider than the scan has an error that nobody has seen, and one that is narrower warns without need."""
+    assert {each.name: each.range for each in FORMULAS} == {name: row["range"] for name, row in TABLE.items()}
 
 
 # --- the range ---
@@ -398,11 +352,34 @@ def test_from_load_one_on_the_laws_of_load_sharing_have_no_value_and_say_so():
         assert np.isnan(asymptotics.perturbation.phi([0.1, 1.0, 3.0])).tolist() == [False, True, True]
 
 
+FORMS = "'uniform', 'exact', 'expansion' or 'leading'"
+BALL = sb.Groups(1e-3, 1e-3, 1e-5, geometry="point")
+REFUSED = [
+    ("boundary.friction", {"printed": "no"}, "printed = .*; it must be"),
+    ("boundary.friction", {"printed": np.nan}, "printed = .*; it must be"),
+    ("boundary.friction", {"form": np.array(["closed"])}, "form = .*; it must be"),
+    ("boundary.friction", {"form": "best"}, "form = 'best'.*'quadrature', 'closed'"),
+    ("boundary.viscous_friction", {"viscous": "none"}, "viscous = 'none'.*'neglected'"),
+    *((f"rest.{name}", {"terms": 3}, "terms = 3; it must be 1 or 2") for name in ("central_gap", "offset")),
+    ("mixed.friction", {"film": "thick"}, "'uniform', 'central' or 'large'"),
+    *((f"transitions.{name}_at_minimum", {"form": "Lambert"}, FORMS) for name in ("separation", "friction", "speed")),
+    *(
+        ("load_sharing.speed_at_fluid_share", {"share": share}, "share = .*a fraction of the load lies between 0 and 1")
+        for share in (0.0, 1.0, -0.1, float("nan"), [0.5, 2.0])
+    ),
+    ("uniform.friction", {"definition": "paper"}, "definition = 'paper'"),
+    ("point.friction.viscous_friction_smooth", {"definition": "paper"}, "definition = 'paper'"),
+    ("point.friction.friction", {"wetted_radius": 0.5}, "wetted_radius = 0.5; in Hertz radii it must exceed 1"),
+    ("point.regressions.de_vicente", {"slope": 0}, "slope = 0; it is a/R and must be positive"),
+]
+"""Options that formulas refuse, and what they say."""
+
+
 def test_an_option_is_one_of_what_it_may_be(subtests):
-    for option in [{"printed": "no"}, {"printed": np.nan}, {"form": np.array(["closed"])}]:
-        with subtests.test(option=option):
-            with pytest.raises(sb.InputError, match=f"{next(iter(option))} = .*; it must be"):
-                asymptotics.boundary.friction(sb.Groups(1e-12, 0.1, 1e-5), **option)
+    for name, option, said in REFUSED:
+        with subtests.test(name=name, option=option), pytest.raises(sb.InputError, match=said):
+            groups = BALL if name.startswith("point") else sb.Groups(1e-12, 0.1, 1e-5)
+            operator.attrgetter(name)(asymptotics)(groups, **option)
 
 
 # --- the form ---
@@ -411,6 +388,7 @@ PRINTED = [formula for formula in FORMULAS if "printed" in inspect.signature(for
 
 
 def test_the_printed_form_of_a_formula_is_another_one(subtests):
+    assert len(PRINTED) >= 10
     for formula in PRINTED:
         with subtests.test(formula=formula):
 
@@ -419,10 +397,6 @@ def test_the_printed_form_of_a_formula_is_another_one(subtests):
 
             assert max(abs(value(groups, True) / value(groups, False) - 1) for groups in states(formula)) > 1e-3
             assert inspect.signature(formula.function).parameters["printed"].default is False
-
-
-def test_formulas_with_a_printed_form_are_on_the_table():
-    assert len(PRINTED) >= 10
 
 
 def test_a_formula_takes_arrays_that_broadcast_and_gives_what_it_gives_for_their_elements(subtests):
@@ -445,9 +419,3 @@ def check_arrays(formula):
     grid = formula.function(sb.Groups(speed[:, None], load[0], roughness[0]), *arguments(formula, some[0]))
     first = formula.function(some[0], *arguments(formula, some[0]))
     np.testing.assert_allclose(np.broadcast_to(grid, (3, 1))[0, 0], first, rtol=1e-8, err_msg=formula.name)
-
-
-def test_every_formula_says_the_range_for_which_its_error_was_scanned():
-    """A range that is wider than the scan has an error that nobody has seen, and one that is narrower warns without need."""
-    said = json.loads((Path(__file__).parent / "data" / "formula_ranges.json").read_text(encoding="utf-8"))
-    assert {each.name: each.range for each in sb.asymptotics.FORMULAS} == said

@@ -94,11 +94,6 @@ def test_the_lean_of_the_contact_pressure_is_what_the_two_definitions_differ_by(
     assert lean == pytest.approx(published - balanced, rel=0.1)
 
 
-def test_an_unknown_film_is_refused_by_name():
-    with pytest.raises(sb.InputError, match="'uniform', 'central' or 'large'"):
-        mixed.friction(sb.Groups(1e-4, 0.1, 1e-4), film="thick")
-
-
 # --- the minimum ---
 
 
@@ -141,12 +136,6 @@ def test_our_minimum_is_stationary():
     assert np.shape(speed) == (2, 1)
     beside = [mixed.friction.function(sb.Groups(f * speed, 0.05, groups.roughness), 0.7, 0.4) for f in (1 / 1.001, 1, 1.001)]
     assert (beside[0] > beside[1]).all() and (beside[2] > beside[1]).all()
-
-
-def test_an_unknown_form_is_refused_by_name():
-    for call in (transitions.separation_at_minimum, transitions.friction_at_minimum, transitions.has_minimum):
-        with pytest.raises(sb.InputError, match="'uniform', 'exact', 'expansion' or 'leading'"):
-            call(sb.Groups(1.0, 0.1, 1e-4), form="Lambert")
 
 
 # --- where the transitions merge ---

@@ -36,6 +36,7 @@ def test_friction_is_within_three_percent_in_the_median_and_the_stated_worst(sub
                 error = np.abs(uniform.friction(groups, 1.0, beta, definition) / right - 1)
                 assert np.median(error) < 0.003
                 assert np.quantile(error, 0.9) < 0.02
+                assert np.mean(error < 0.03) > 0.94 and np.mean(error < 0.01) > 0.85  # as validity.md says
                 assert error.max() < uniform.friction.worst
 
 
@@ -94,13 +95,6 @@ def test_contacts_at_rest_and_without_roughness_are_exact():
         friction = uniform.friction(groups, boundary_friction=0.7)
     assert friction[0] == 0.7
     assert friction[1] == hydrodynamic.friction_uniform(sb.Groups(1e-3, 0.1, 0.0))
-
-
-def test_a_share_that_is_none_is_refused(subtests):
-    for share in [0.0, 1.0, -0.1, float("nan"), [0.5, 2.0]]:
-        with subtests.test(share=share):
-            with pytest.raises(sb.InputError, match="a fraction of the load lies between 0 and 1"):
-                load_sharing.speed_at_fluid_share(sb.Groups(1.0, 0.1, 1e-4), share)
 
 
 # --- the limit of small roughness at a fixed fluid number ---

@@ -212,24 +212,6 @@ def test_a_coarser_map_finds_no_worse_error_than_the_page(blocks):
             assert errors.size and errors.max() <= 1.01 * shown, name
 
 
-@pytest.mark.slow
-def test_the_uniform_law_of_friction_is_as_good_over_its_box_as_the_page_says():
-    rng = np.random.default_rng(71503)
-    errors = []
-    for _ in range(8):
-        load, kappa = np.exp(rng.uniform(np.log([1e-4, 1e-4]), np.log([0.7, 1e-1])))
-        curve = sb.stribeck_curve(load=load, roughness=kappa * load, speed=(1e-9, 1e2), points=12)
-        for beta in (1.0, 0.1, 0.01):
-            right = np.array(
-                [state.friction(boundary_friction=1.0, beta=beta, definition="published").total for state in curve.solutions]
-            )
-            errors.append(np.abs(uniform.friction.function(curve.groups, 1.0, beta) / right - 1))
-    assert np.max(errors) <= 0.072
-    assert np.median(errors) < 0.002
-    assert np.mean(np.less(errors, 0.03)) > 0.98
-    assert np.mean(np.less(errors, 0.01)) > 0.85
-
-
 def test_new_text_replaces_what_stands_between_marks_and_a_new_module_gets_a_section(script):
     page = "a\n<!-- begin x -->\nold\n<!-- end x -->\nb\n"
     text = script.filled(page, {"x": r"new \1", "y": "more"})

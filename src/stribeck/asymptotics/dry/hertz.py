@@ -10,17 +10,9 @@ from functools import partial
 import numpy as np
 
 from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.judged import around_contact, line_at_rest
 from stribeck.contacts.groups import Groups
 from stribeck.solids import hertz
-
-
-def _rest(relative_roughness: float) -> Groups:
-    return Groups(0.0, 0.1, 0.1 * relative_roughness)
-
-
-def _contact_and_around(groups: Groups) -> tuple[float, float]:
-    return -2.0, 2.0
-
 
 _dry = partial(
     formula,
@@ -29,7 +21,7 @@ _dry = partial(
     limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-4)),
     small="relative_roughness",
     error_order=1,
-    approach=_rest,
+    approach=line_at_rest,
     steps=(1e-3, 1e-4, 1e-5),
 )
 
@@ -38,7 +30,7 @@ _dry = partial(
     limits=(Limit("speed", 0, 1e-7), Limit("relative_roughness", 0, 1e-4)),
     worst=0.05,
     error_order=1 / 3,
-    interval=_contact_and_around,
+    interval=around_contact,
     source="[BP] Eq. (Hertz)",
 )
 def pressure(groups: Groups, x: Value) -> Value:
@@ -54,7 +46,7 @@ def pressure(groups: Groups, x: Value) -> Value:
     return hertz.pressure(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
 
 
-@_dry(worst=1e-3, interval=_contact_and_around, source="[BP] Eq. (Hertz)")
+@_dry(worst=1e-3, interval=around_contact, source="[BP] Eq. (Hertz)")
 def gap(groups: Groups, x: Value) -> Value:
     r"""Return the gap around the dry contact.
 

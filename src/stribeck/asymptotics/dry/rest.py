@@ -14,6 +14,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula, second
+from stribeck.asymptotics.judged import inside_contact, line_at_rest
 from stribeck.contacts.groups import Groups
 from stribeck.solids import hertz
 
@@ -21,17 +22,9 @@ LARGE_INDENTATION = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e
 SMALL_INDENTATION = (Limit("load", 1e-8, 0.5), Limit("1/relative_roughness", 0, 0.1))
 
 
-def _smoother(relative_roughness: float) -> Groups:
-    return Groups(0.0, 0.1, 0.1 * relative_roughness)
-
-
 def _rougher(inverse: float) -> Groups:
     # At a fixed load per roughness the logarithm in the gap stays what it is.
     return Groups(0.0, 1e-6 / inverse, 1e-6 / inverse**2)
-
-
-def _contact(groups: Groups) -> tuple[float, float]:
-    return -0.9, 0.9
 
 
 def _gaussian(groups: Groups) -> tuple[float, float]:
@@ -46,7 +39,7 @@ _large_indentation = partial(
     limits=LARGE_INDENTATION,
     small="relative_roughness",
     error_order=1,
-    approach=_smoother,
+    approach=line_at_rest,
     steps=(1e-2, 1e-3, 1e-4),
 )
 
@@ -55,7 +48,7 @@ _large_indentation = partial(
     undefined="from the edge of the contact outwards, where this has no value",
     worst=0.03,
     steps=(1e-3, 1e-4, 1e-5),
-    interval=_contact,
+    interval=inside_contact,
     source="[BP] Eq. (central_region_contact)",
 )
 def gap(groups: Groups, x: Value, terms: int = 1) -> Value:

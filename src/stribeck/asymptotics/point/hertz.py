@@ -12,19 +12,11 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.judged import around_contact, ball_at_rest
 from stribeck.contacts.groups import Groups
 from stribeck.solids import hertz
 
 HERTZ_OFFSET = -1.0  # Offset of the dry smooth contact [u_Hz]: the ball has come closer by the indentation.
-
-
-def _rest(relative_roughness: float) -> Groups:
-    load = 1e-3
-    return Groups(0.0, load, load ** (2 / 3) * relative_roughness, geometry="point")
-
-
-def _contact_and_around(groups: Groups) -> tuple[float, float]:
-    return -2.0, 2.0
 
 
 _dry = partial(
@@ -35,7 +27,7 @@ _dry = partial(
     limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-3)),
     small="relative_roughness",
     error_order=1,
-    approach=_rest,
+    approach=ball_at_rest,
     steps=(1e-2, 1e-3, 1e-4),
 )
 
@@ -44,7 +36,7 @@ _dry = partial(
     limits=(Limit("speed", 0, 1e-7), Limit("relative_roughness", 0, 1e-3)),
     worst=0.11,
     error_order=1 / 3,
-    interval=_contact_and_around,
+    interval=around_contact,
     source="Hertz (1882)",
 )
 def pressure(groups: Groups, x: Value) -> Value:
@@ -59,7 +51,7 @@ def pressure(groups: Groups, x: Value) -> Value:
     return hertz.pressure(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
 
 
-@_dry(worst=0.012, interval=_contact_and_around, source="Johnson (1985), Section 3.4")
+@_dry(worst=0.012, interval=around_contact, source="Johnson (1985), Section 3.4")
 def gap(groups: Groups, x: Value) -> Value:
     r"""Return the gap around the dry contact of a ball.
 
@@ -67,12 +59,8 @@ def gap(groups: Groups, x: Value) -> Value:
 
     Notes
     -----
-    Zero in the contact.
-
-    Notes
-    -----
-    The error is relative to the largest gap within two radii; it is of order kappa,
-    with logarithms, or lambda**(3/5).
+    Zero in the contact.  The error is relative to the largest gap within two radii; it is of order kappa, with logarithms, or
+    lambda**(3/5).
     """
     return dry_gap(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
 

@@ -28,6 +28,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula, second
+from stribeck.asymptotics.judged import ball_at_rest, inside_contact
 from stribeck.asymptotics.smooth.edge_layer import layer
 from stribeck.contacts.groups import Groups
 
@@ -44,19 +45,10 @@ GAUSS_RULE = np.polynomial.legendre.leggauss(40)  # Rule of the correction of th
 LAYER_WIDTHS = 5.0  # Distance from the edge [layer widths] to which the fields are compared with the solver.
 
 
-def _smoother(relative_roughness: float) -> Groups:
-    load = 1e-3
-    return Groups(0.0, load, load ** (2 / 3) * relative_roughness, geometry="point")
-
-
 def _rougher(inverse: float) -> Groups:
     # At a fixed pressure of the law over that in the middle the logarithm in the gap stays what it is.
     load = (1e-3 / inverse) ** 3
     return Groups(0.0, load, load ** (2 / 3) / inverse, geometry="point")
-
-
-def _contact(groups: Groups) -> tuple[float, float]:
-    return -0.9, 0.9
 
 
 def _edge(groups: Groups) -> tuple[float, float]:
@@ -72,13 +64,16 @@ _large_indentation = partial(
     limits=LARGE_INDENTATION,
     small="relative_roughness",
     error_order=1,
-    approach=_smoother,
+    approach=ball_at_rest,
     steps=(1e-2, 1e-3, 1e-4),
 )
 
 
 @_large_indentation(
-    undefined="from the edge of the contact outwards, where this has no value", worst=0.05, interval=_contact, source="ours"
+    undefined="from the edge of the contact outwards, where this has no value",
+    worst=0.05,
+    interval=inside_contact,
+    source="ours",
 )
 def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
     r"""Return the gap in the contact of a rough ball at rest.
@@ -148,7 +143,7 @@ _at_edge = partial(
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-5, 1e-2)),
     small="relative_roughness",
     error_order=2 / 3,
-    approach=_smoother,
+    approach=ball_at_rest,
     steps=(1e-2, 1e-3, 1e-4),
     interval=_edge,
     source="ours, with the edge of the line",

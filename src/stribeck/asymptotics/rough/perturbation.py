@@ -26,6 +26,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Limit, OutOfRangeWarning, Value, fluid_number, formula
+from stribeck.asymptotics.judged import inside_contact
 from stribeck.asymptotics.rough.slow_contact import half_logarithm, of_load, outward
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.units import InputError, show
@@ -119,10 +120,6 @@ def _slow(relative_roughness: float) -> Groups:
     return Groups(1e-4 * float(phi_of(load)) ** -0.5 * relative_roughness**2, load, relative_roughness * load)
 
 
-def _contact(groups: Groups) -> tuple[float, float]:
-    return -0.9, 0.9
-
-
 _expansion = partial(
     formula, plane="mixed", small="relative_roughness", error_order=2 / 3, approach=_slow, steps=(1e-3, 1e-4, 1e-5)
 )
@@ -153,7 +150,7 @@ def flux_gap(groups: Groups) -> Value:
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 1e-4)),
     undefined="from load 1 on",
     worst=0.07,
-    interval=_contact,
+    interval=inside_contact,
     source="[BP] Eqs. (first-order_thin-film) and (pf1), which lack the cube that Appendix D has",
 )
 def fluid_pressure_first(groups: Groups, x: Value, printed: bool = False) -> Value:
@@ -166,10 +163,9 @@ def fluid_pressure_first(groups: Groups, x: Value, printed: bool = False) -> Val
     printed : bool
         With the denominator as printed in Appendix C, h_0 for its cube; then the pressure behind the contact is not zero.
 
-    Returns
-    -------
-    float or ndarray
-        Fluid pressure [p_Hz]; zero outside the contact, nan from load 1 on.
+    Notes
+    -----
+    Zero outside the contact.
     """
     scale = groups.speed if printed else fluid_number(groups)
     return scale * _first_pressure(groups.load, x, 1 if printed else 3)
@@ -192,7 +188,7 @@ def _first_pressure(load: Value, x: Value, power: int = 3) -> Array:
     undefined="outside the contact, where this has no value, and from load 1 on",
     worst=0.06,
     error_order=1,
-    interval=_contact,
+    interval=inside_contact,
     source="[BP] Eqs. (central_region_contact) and (h1)",
 )
 def gap_first(groups: Groups, x: Value) -> Value:
@@ -202,9 +198,8 @@ def gap_first(groups: Groups, x: Value) -> Value:
 
     Notes
     -----
-    The part odd in x is the second term.
-
-    They print h_1 ~ kappa for 1/kappa, and the step function of p_0 the wrong way round.
+    The part odd in x is the second term.  [BP] print h_1 ~ kappa for 1/kappa, and the step function of p_0 the wrong way
+    round.
     """
     x = np.asarray(x, dtype=float)
     below = np.where(np.abs(x) < 1, (1 - x) * (1 + x), np.nan)
@@ -218,7 +213,7 @@ def gap_first(groups: Groups, x: Value) -> Value:
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 0.01)),
     undefined="from load 1 on",
     worst=0.085,
-    interval=_contact,
+    interval=inside_contact,
     source="[BP] Eqs. (pf1), with cubed denominator, and (p2)",
 )
 def fluid_pressure_second(groups: Groups, x: Value) -> Value:

@@ -29,6 +29,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.judged import line_at_rest
 from stribeck.asymptotics.smooth.half_line import HalfLine, Layer
 from stribeck.contacts.groups import Groups
 from stribeck.numerics.newton import Dense, StepControl, root_find
@@ -38,10 +39,6 @@ LAYER_LOAD = 0.5 * np.pi  # Integral of P - P_H over the layer.
 
 LAYER_RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-6, 1e-2))
 LAYER_WIDTHS = 5.0  # Distance from the edge [layer widths] to which the fields are compared with the solver.
-
-
-def _rough(roughness: float) -> Groups:
-    return Groups(0.0, 0.1, 0.1 * roughness)
 
 
 def _interval(groups: Groups) -> tuple[float, float]:
@@ -61,7 +58,7 @@ _edge = partial(
     limits=LAYER_RANGE,
     small="relative_roughness",
     error_order=2 / 3,
-    approach=_rough,
+    approach=line_at_rest,
     steps=(1e-3, 1e-4, 1e-5),
     interval=_interval,
     source="[BP] Appendix B; the edge at 1 - kappa is ours",

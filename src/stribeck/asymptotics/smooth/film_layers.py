@@ -27,6 +27,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.judged import smooth_line
 from stribeck.asymptotics.smooth.half_line import HalfLine, Layer
 from stribeck.contacts.groups import Groups
 from stribeck.numerics.newton import Dense, StepControl, root_find
@@ -35,10 +36,6 @@ from stribeck.numerics.threads import one_blas_thread
 SLOW_RANGE = (Limit("speed", 1e-10, 1e-3),)
 LAYER_WIDTHS = 5.0  # Distance from the edge [layer widths] to which the fields are compared with the solver.
 ORDER_SPEEDS = (1e-5, 1e-6, 1e-7, 1e-8)
-
-
-def _smooth(speed: float) -> Groups:
-    return Groups(speed, 0.1, 0.0)
 
 
 def _at_inlet(groups: Groups) -> tuple[float, float]:
@@ -58,7 +55,7 @@ _layer = partial(
     limits=SLOW_RANGE,
     small="speed",
     error_order=0.4,
-    approach=_smooth,
+    approach=smooth_line,
     steps=ORDER_SPEEDS,
     source="[BP] Section 'Smooth limit', after Snoeijer, Eggers and Venner (2013); solved here",
 )

@@ -13,13 +13,10 @@ from functools import partial
 
 from stribeck.asymptotics.constants import FILM_CONSTANT, MINIMUM_CONSTANT, PRINTED_FILM_CONSTANT
 from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.judged import smooth_line
 from stribeck.contacts.groups import Groups
 
 SLOW_RANGE = (Limit("speed", 0.0, 1e-3),)
-
-
-def _at_speed(speed: float) -> Groups:
-    return Groups(speed, 0.1, 0.0)
 
 
 _slow = partial(
@@ -29,7 +26,7 @@ _slow = partial(
     limits=SLOW_RANGE,
     small="speed",
     error_order=0.4,
-    approach=_at_speed,
+    approach=smooth_line,
     steps=(1e-9, 1e-8, 1e-7),
 )
 
