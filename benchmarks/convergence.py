@@ -15,7 +15,7 @@ import argparse
 import math
 import platform
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -75,33 +75,37 @@ def wider(mesh: Mesh, doublings: int, order: int) -> Mesh:
     return Mesh(np.concatenate([-out[::-1], mesh.edges, out]), order, mesh.scale)
 
 
-def row(groups: sb.Groups, guess: State, mesh: Mesh, truth: np.ndarray) -> tuple[int, int, float, float]:
-    """Return panels, unknowns, true and estimated error on one mesh."""
+def cell(groups: sb.Groups, guess: State, mesh: Mesh, truth: np.ndarray) -> str:
+    """Return unknowns, true and estimated error on one mesh."""
     values, estimate, scales = observed(solve_state(groups, Operators(mesh), guess, NEWTON))
-    return mesh.panels, mesh.size, float((np.abs(values - truth) / scales).max()), estimate
+    return f"{mesh.size}: {float((np.abs(values - truth) / scales).max()):.1e} ({estimate:.1e})"
 
 
-def by_order(groups: sb.Groups, guess: State, truth: np.ndarray) -> Iterator[str]:
-    """Yield the rows of the table on fixed panels."""
+def by_order(groups: sb.Groups, guess: State, truth: np.ndarray) -> list[str]:
+    """Return the cells of one state on fixed panels."""
     panels = wider(mesh_for(guess, groups, guess.equations.law, 10, 1e-4), 3, 10)
-    for order in ORDERS:
-        count, unknowns, error, estimate = row(groups, guess, panels.refined(order), truth)
-        yield f"| {order} | {count} | {unknowns} | {error:.1e} | {estimate:.1e} |"
+    return [cell(groups, guess, panels.refined(order), truth) for order in ORDERS]
 
 
-def by_tolerance(groups: sb.Groups, guess: State, truth: np.ndarray, order: int) -> Iterator[str]:
-    """Yield the rows of the table on panels chosen for a tolerance."""
-    seen = 0
+def by_tolerance(groups: sb.Groups, guess: State, truth: np.ndarray, order: int) -> list[str]:
+    """Return the cells of one state on panels chosen for a tolerance."""
+    found = []
     for tolerance in TOLERANCES:
         try:
             mesh = mesh_for(guess, groups, guess.equations.law, order, tolerance, 0.1 * tolerance)
         except MeshTooLargeError:
-            return
-        if mesh.size == seen:
-            continue
-        seen = mesh.size
-        count, unknowns, error, estimate = row(groups, guess, mesh, truth)
-        yield f"| {tolerance:.0e} | {order} | {count} | {unknowns} | {error:.1e} | {estimate:.1e} |"
+            found.append("")
+        else:
+            found.append(cell(groups, guess, mesh, truth))
+    return found
+
+
+def table(first: str, rows: Iterable[str], columns: dict[str, list[str]]) -> Iterator[str]:
+    """Yield a table with a column for each state."""
+    yield f"| {first} | {' | '.join(columns)} |"
+    yield f"|---:|{'---|' * len(columns)}"
+    for name, *cells in zip(rows, *columns.values(), strict=True):
+        yield f"| {name} | {' | '.join(cells)} |"
 
 
 def by_roughness(number: int) -> Iterator[str]:
@@ -119,33 +123,33 @@ def document(number: int = len(STATES)) -> Iterator[str]:
     yield ""
     yield head()
     yield ""
-    yield (
-        "The error is the largest relative error of load shares (absolute), central and minimum gap, flux gap, "
-        "offset and both frictions; the estimate is what a solution would state."
-    )
-    for name, numbers in list(STATES.items())[:number]:
-        groups = sb.Groups(*numbers)
-        guess = exact(groups)
-        truth = observed(guess)[0]
+    yield "Cells: unknowns, error, and in brackets the estimate that a solution would state. The error is the largest relative"
+    yield "one of load shares (absolute), central and minimum gap, flux gap, offset and both frictions."
+    chosen = {name: sb.Groups(*numbers) for name, numbers in list(STATES.items())[:number]}
+    guesses = {name: exact(groups) for name, groups in chosen.items()}
+    truths = {name: observed(guess)[0] for name, guess in guesses.items()}
+    yield ""
+    yield "| state | speed | load | roughness |"
+    yield "|---|---:|---:|---:|"
+    for name, groups in chosen.items():
+        yield f"| {name} | {groups.speed:g} | {groups.load:g} | {groups.roughness:g} |"
+    yield ""
+    yield "## More nodes on the same panels"
+    yield ""
+    yield "The panels reach so far that the logarithm in the gap does not show."
+    yield ""
+    columns = {name: by_order(groups, guesses[name], truths[name]) for name, groups in chosen.items()}
+    yield from table("nodes a panel", map(str, ORDERS), columns)
+    for order in (10, 14):
         yield ""
-        yield f"## {name.capitalize()}: speed {numbers[0]:g}, load {numbers[1]:g}, roughness {numbers[2]:g}"
+        yield f"## Panels chosen for a tolerance, {order} nodes each"
         yield ""
-        yield "More nodes on the same panels, which reach so far that the logarithm in the gap does not show:"
-        yield ""
-        yield "| nodes a panel | panels | unknowns | error | estimate |"
-        yield "|---:|---:|---:|---:|---:|"
-        yield from by_order(groups, guess, truth)
-        yield ""
-        yield "Panels chosen for a tolerance, as the solver does:"
-        yield ""
-        yield "| tolerance | nodes a panel | panels | unknowns | error | estimate |"
-        yield "|---:|---:|---:|---:|---:|---:|"
-        for order in (10, 14):
-            yield from by_tolerance(groups, guess, truth, order)
+        columns = {name: by_tolerance(groups, guesses[name], truths[name], order) for name, groups in chosen.items()}
+        yield from table("tolerance", (f"{each:.0e}" for each in TOLERANCES), columns)
     yield ""
     yield "## Unknowns against the width of the edge"
     yield ""
-    yield "Speed zero; panels halve towards the edge: their number grows as the logarithm of 1/kappa."
+    yield "At rest. Panels halve towards the edge, so their number grows as the logarithm of 1/kappa."
     yield ""
     yield "| kappa | log2(1/kappa) | unknowns, rtol 1e-6 | estimate | unknowns, rtol 1e-9 | estimate |"
     yield "|---:|---:|---:|---:|---:|---:|"

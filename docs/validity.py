@@ -4,9 +4,8 @@ Usage::
 
     python docs/validity.py [BLOCK ...]
 
-Takes about three minutes on one core; with the names of blocks (``shares``, ``ratios`` or modules of
-formulas) only these are made.  What stands in the page between marks is replaced, all other text is kept; a module
-of formulas that has no section yet gets one.
+Takes about three minutes on one core; with the names of blocks (``shares``, ``ratios`` or keys of ``SECTIONS``) only these are
+made.  What stands in the page between marks is replaced, all other text is kept.
 """
 
 from __future__ import annotations
@@ -41,6 +40,18 @@ ABOUT = {"smooth": "smooth", "rest": "at rest", "mixed": "any state", "located":
 }
 """What a formula is about, in the words of the table."""
 
+SECTIONS = {
+    "every_speed": ("uniform", "load_sharing"),
+    "smooth": ("hertz", "large_deformation", "small_deformation", "hydrodynamic", "film_layers"),
+    "at_rest": ("rest", "edge_layer"),
+    "boundary": ("perturbation", "boundary", "wedge"),
+    "mixed": ("mixed", "transitions"),
+    "ball": tuple(
+        f"point.{each}" for each in ("hertz", "rest", "film", "rigid", "regressions", "boundary", "sharing", "friction")
+    ),
+}
+"""Modules of formulas in each table of the page."""
+
 SHARE_LOADS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 0.7)
 SHARE_KAPPAS = np.logspace(-4, -1, 7)
 """Grid of the speeds at which the fluid carries a share."""
@@ -49,14 +60,9 @@ RATIO_POINTS = (22, 19)
 """Loads and relative roughnesses at which the errors over beta/mu0 are measured."""
 
 
-def modules() -> list[str]:
-    """Return the modules of formulas, in the order of the table."""
-    return list(dict.fromkeys(formula.module for formula in FORMULAS))
-
-
-def of_module(module: str) -> list[Formula[Any]]:
-    """Return the formulas of a module."""
-    return [formula for formula in FORMULAS if formula.module == module]
+def of_modules(*modules: str) -> list[Formula[Any]]:
+    """Return the formulas of some modules."""
+    return [formula for module in modules for formula in FORMULAS if formula.module == module]
 
 
 def short(value: float) -> str:
@@ -79,14 +85,18 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def in_words(limits: Iterable[Limit]) -> str:
     """Return a range in words."""
-    text = ", ".join(map(str, limits))
+    text = ", ".join(map(str, limits)).replace("relative roughness", "kappa")
     return re.sub(r"[0-9.]+e-\d+|\b0\.00\d*", lambda found: short(float(found[0])), text)
 
 
 def goes_as(formula: Formula[Any]) -> str:
     """Return the power of the small parameter as which the error of a formula vanishes; nothing where it does not."""
-    small, order = formula.small.replace("_", " "), Fraction(formula.error_order).limit_denominator(12)
-    return f"({small})<sup>{order}</sup>" if small and order != 1 else small
+    small, order = (
+        formula.small.replace("relative_roughness", "kappa").replace("_", " "),
+        Fraction(formula.error_order).limit_denominator(12),
+    )
+    base = f"({small})" if "/" in small or " " in small else small
+    return f"{base}<sup>{order}</sup>" if small and order != 1 else small
 
 
 def place(data: xarray.Dataset, at: Sequence[int]) -> str:
@@ -105,24 +115,13 @@ def measured(data: xarray.Dataset) -> list[str]:
     return [percent(float(np.nanmedian(size))), f"{percent(float(size[at]))} at {place(data, [int(i) for i in at])}"]
 
 
-def module_table(module: str, maps: dict[str, xarray.Dataset]) -> str:
-    """Return what the formulas of a module state of their errors, and what the grid of their picture shows.
-
-    What they are about, and the limits that all of them have, is said once above the table.
-    """
-    formulas = of_module(module)
-    kinds = list(dict.fromkeys(ABOUT[kind_of(formula)] for formula in formulas))
-    common = [limit for limit in formulas[0].limits if all(limit in formula.limits for formula in formulas)]
-    about = f"About: {', '.join(kinds)}." + (f" Range of all: {in_words(common)}." if common else "")
+def error_table(section: str, measures: dict[str, Sequence[str]]) -> str:
+    """Return what the formulas of a section state of their errors, and what the grids of their pictures show."""
     rows = []
-    for formula in formulas:
-        own = [ABOUT[kind_of(formula)]] if len(kinds) > 1 else []
-        own += [in_words(limit for limit in formula.limits if limit not in common)]
-        limits = ", ".join(filter(None, own)) or ("" if common else "everywhere")
-        stated = [f"`{formula.name.rpartition('.')[2]}`", limits, percent(formula.worst), goes_as(formula)]
-        rows.append([*stated, *measured(maps[formula.name])])
-    head = ["Formula", "Range, further" if common else "Range", "Error stated", "falls as", "Median", "Largest on the map"]
-    return f"{about}\n\n{table(head, rows)}"
+    for formula in of_modules(*SECTIONS[section]):
+        holds = ", ".join(filter(None, (ABOUT[kind_of(formula)], in_words(formula.limits))))
+        rows.append([f"`{formula.name}`", holds, percent(formula.worst), goes_as(formula), *measures[formula.name]])
+    return table(["Formula", "Holds for", "Error stated", "falls as", "Median", "Largest on the map"], rows)
 
 
 def share_maps() -> list[tuple[Formula[Any], xarray.Dataset]]:
@@ -168,14 +167,12 @@ def blocks_of(text: str) -> dict[str, str]:
 
 
 def filled(text: str, blocks: dict[str, str]) -> str:
-    """Return a page with new text between its marks; a block without marks is added at the end, with its picture."""
+    """Return a page with new text between its marks."""
     for name, body in blocks.items():
         block = f"<!-- begin {name} -->\n{body}\n<!-- end {name} -->"
         text, found = re.subn(rf"<!-- begin {name} -->\n.*?<!-- end {name} -->", lambda _: block, text, flags=re.DOTALL)  # noqa: B023
         if not found:
-            picture = f"![Errors of {name}](images/validity_{name}.png)"
-            folded = f"<details><summary>Map of the errors</summary>\n\n{picture}\n\n</details>"
-            text = f"{text.rstrip()}\n\n## `{name}`\n\n{block}\n\n{folded}\n"
+            sys.exit(f"the page has no marks for {name}")
     return text
 
 
@@ -183,26 +180,27 @@ def filled(text: str, blocks: dict[str, str]) -> str:
 def main(wanted: Sequence[str] = ()) -> None:
     """Solve, draw, and write the page, or those of its blocks that are named."""
     start = time.perf_counter()
-    others = ("shares", "ratios")
-    if unknown := set(wanted) - {*others, *modules()}:
-        sys.exit(f"no block is called {', '.join(sorted(unknown))}; there are {', '.join((*others, *modules()))}")
-    made = wanted or (*others, *modules())
+    known = ("shares", "ratios", *SECTIONS)
+    if unknown := set(wanted) - set(known):
+        sys.exit(f"no block is called {', '.join(sorted(unknown))}; there are {', '.join(known)}")
+    made = wanted or known
 
     def say(what: str) -> None:
         print(f"{time.perf_counter() - start:5.0f} s  {what}", flush=True)
 
+    wanted_modules = [module for section in SECTIONS if section in made for module in SECTIONS[section]]
     maps: dict[str, xarray.Dataset] = {}
     for kind in ABOUT:
-        if judged := [each for each in FORMULAS if kind_of(each) == kind and each.module in made]:
+        if judged := [each for each in of_modules(*wanted_modules) if kind_of(each) == kind]:
             say(f"formulas about {ABOUT[kind]}")
             maps |= error_maps(judged)
-    blocks = {}
-    for module in (each for each in modules() if each in made):
+    for module in wanted_modules:
         say(f"picture of {module}")
-        pairs = [(formula, maps[formula.name]) for formula in of_module(module)]
+        pairs = [(formula, maps[formula.name]) for formula in of_modules(module)]
         path = IMAGES / f"validity_{module.replace('.', '_')}.png"
         plot_error_maps(pairs, path, force=True, title=f"Errors of stribeck.asymptotics.{module}")
-        blocks[module] = module_table(module, maps)
+    found = {name: measured(data) for name, data in maps.items()}
+    blocks = {section: error_table(section, found) for section in SECTIONS if section in made}
     if "shares" in made:
         say("speeds at which the fluid carries a share")
         shares = share_maps()

@@ -52,6 +52,12 @@ def rows(block):
     return {cells[0].strip("` "): cells[1:] for cells in lines}
 
 
+@pytest.fixture(scope="module")
+def shown(script, blocks):
+    """Return what the page shows of each formula, by its name."""
+    return {name: cells for section in script.SECTIONS for name, cells in rows(blocks[section]).items()}
+
+
 # --- the maps ---
 
 GRID = {"load": [1e-3, 0.3], "relative_roughness": [1e-4, 3e-3], "speed": [1e-8, 1e-5, 1e-2]}
@@ -149,24 +155,19 @@ def test_a_picture_has_a_panel_for_each_load_of_a_map_and_one_for_each_line(maps
 # --- the page ---
 
 
-def names(formulas):
-    """Return the names of formulas without that of their module."""
-    return [formula.name.rpartition(".")[2] for formula in formulas]
-
-
-def test_every_module_has_a_picture_and_a_table_that_states_range_and_error_of_its_formulas(script, blocks):
-    for module in script.modules():
-        formulas = script.of_module(module)
-        assert f"](images/validity_{module.replace('.', '_')}.png)" in PAGE
-        table = rows(blocks[module])
-        assert list(table) == names(formulas)
+def test_every_table_states_range_and_error_of_its_formulas_and_every_module_has_a_picture(script, blocks):
+    shown = [module for section in script.SECTIONS.values() for module in section]
+    assert sorted(shown) == sorted({formula.module for formula in FORMULAS})
+    assert set(blocks) == {"shares", "ratios", *script.SECTIONS}
+    for section, modules in script.SECTIONS.items():
+        formulas = script.of_modules(*modules)
+        table = rows(blocks[section])
+        assert list(table) == [formula.name for formula in formulas]
         for formula, cells in zip(formulas, table.values(), strict=True):
-            common = blocks[module].splitlines()[0]
-            for limit in formula.limits:
-                assert (script.in_words([limit]) in cells[0]) != (script.in_words([limit]) in common), formula.name
-            assert cells[1:3] == [script.percent(formula.worst), script.goes_as(formula)]
-            assert script.ABOUT[kind_of(formula)] in common
-    assert set(blocks) == {"shares", "ratios", *script.modules()}
+            holds = ", ".join(filter(None, (script.ABOUT[kind_of(formula)], script.in_words(formula.limits))))
+            assert cells[:3] == [holds, script.percent(formula.worst), script.goes_as(formula)], formula.name
+        for module in modules:
+            assert f"](images/validity_{module.replace('.', '_')}.png)" in PAGE
 
 
 def test_the_pictures_of_the_page_are_small_and_no_others_are_left():
@@ -185,8 +186,8 @@ def test_every_kind_of_formula_is_explained(script):
 
 
 @NAMED
-def test_the_worst_error_on_the_page_is_the_one_there_and_within_the_stated_one(formula, blocks):
-    worst, _, where = rows(blocks[formula.module])[formula.name.rpartition(".")[2]][-1].partition(" % at ")
+def test_the_worst_error_on_the_page_is_the_one_there_and_within_the_stated_one(formula, shown):
+    worst, _, where = shown[formula.name][-1].partition(" % at ")
     shown = float(worst) / 100
     at = {name: float(value) for name, value in (part.rsplit(" ", 1) for part in where.split(", "))}
     load, exponent = at.get("load", 0.1), {"line": 1.0, "point": 2 / 3}[formula.geometry]
@@ -196,7 +197,7 @@ def test_the_worst_error_on_the_page_is_the_one_there_and_within_the_stated_one(
 
 
 @pytest.mark.slow
-def test_a_coarser_map_finds_no_worse_error_than_the_page(blocks):
+def test_a_coarser_map_finds_no_worse_error_than_the_page(shown):
     # Along the speed every state is kept, as long steps cost more than what lies between.
     for kind, rough in (("smooth", slice(None)), ("rest", slice(1, None, 5)), ("mixed", slice(3, None, 16))):
         formulas = [formula for formula in FORMULAS if kind_of(formula) == kind]
@@ -207,19 +208,14 @@ def test_a_coarser_map_finds_no_worse_error_than_the_page(blocks):
             grid[name] = {"load": [low, high], "relative_roughness": points[rough], "speed": points}[name]
         for name, data in error_maps(formulas, **grid).items():
             errors = np.abs(data["error"].values)[data["valid"].values]
-            module, _, short = name.rpartition(".")
-            shown = float(rows(blocks[module])[short][-1].partition(" % at ")[0]) / 100
-            assert errors.size and errors.max() <= 1.01 * shown, name
+            assert errors.size and errors.max() <= 1.01 * float(shown[name][-1].partition(" % at ")[0]) / 100, name
 
 
-def test_new_text_replaces_what_stands_between_marks_and_a_new_module_gets_a_section(script):
+def test_new_text_replaces_what_stands_between_marks(script):
     page = "a\n<!-- begin x -->\nold\n<!-- end x -->\nb\n"
-    text = script.filled(page, {"x": r"new \1", "y": "more"})
-    assert text.startswith("a\n<!-- begin x -->\nnew \\1\n<!-- end x -->\nb\n")
-    section = text.partition("## `y`\n\n")[2]
-    assert section.startswith("<!-- begin y -->\nmore\n<!-- end y -->\n")
-    assert "![Errors of y](images/validity_y.png)" in section
-    assert script.blocks_of(text) == {"x": r"new \1", "y": "more"}
+    text = script.filled(page, {"x": r"new \1"})
+    assert text == "a\n<!-- begin x -->\nnew \\1\n<!-- end x -->\nb\n"
+    assert script.blocks_of(text) == {"x": r"new \1"}
 
 
 def test_every_quantity_that_a_formula_predicts_is_measured():
