@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array
+from stribeck._types import Array, Indices
 from stribeck.fits.model import Prediction
 from stribeck.fits.objective import CAUCHY, Objective
 from stribeck.quantities.units import InputError
@@ -65,9 +65,14 @@ class Minimum:
     @property
     def converged(self) -> bool:
         """Whether this is the optimum, within a hundredth of a standard error or the error of the states."""
-        error = self.prediction.error / (self.prediction.friction if self.objective.logarithmic else 1.0)
-        known = float(np.sqrt(np.mean((error / self.objective.size) ** 2)))
+        known = float(np.sqrt(np.mean(self.doubt**2)))
         return self.ended and (self.distance < NEAR or math.sqrt(self.fall) < known)
+
+    @property
+    def doubt(self) -> Array:
+        """Errors of the residuals by those of the states."""
+        error = self.prediction.error / (self.prediction.friction if self.objective.logarithmic else 1.0)
+        return np.asarray(error / self.objective.size)
 
     @property
     def at_bound(self) -> Array:
@@ -139,7 +144,7 @@ def minimise(
         theta = whole(x)
         r, J, prediction = evaluate(theta)
         part = Minimum(theta, goal.value(theta, r), r, J, prediction, 0.0, ended, count, goal)
-        return replace(part, fall=_fall(part, moving[~part.at_bound[moving]]))
+        return replace(part, fall=_step_left(part, moving)[1])
 
     chosen: Any = loss if goal.robust else "linear"
     x = np.clip(np.asarray(start, dtype=float)[moving], low[moving] + 1e-9, high[moving] - 1e-9)
@@ -156,7 +161,19 @@ def minimise(
             gtol=VALUE_TOLERANCE,
             max_nfev=most,
         )
-        return reached(found.x, found.status > 0)
+        here = reached(found.x, found.status > 0)
+        # Where q jumps by the errors of the states, steps are refused that its derivatives show to be right.
+        while here.ended and not here.converged and count < most:
+            step = _step_left(here, moving)[0]
+            jump = 2.0 * float(np.abs(goal.influence(here.residuals)[0]) @ here.doubt)
+            try:
+                there = reached(np.clip(here.theta + step, low, high)[moving], True)
+            except (SolveError, InputError):
+                break
+            if there.fall >= here.fall or there.value > here.value + jump:
+                break
+            here = there
+        return here
     return first
 
 
@@ -171,15 +188,17 @@ def _held(J: Array, flat: float) -> Array:
     return np.asarray(np.where(S <= flat * S[0], size, 0.0)[:, None] * V)
 
 
-def _fall(at: Minimum, free: Array) -> float:
-    """Return how far q falls along the Gauss-Newton step that is left, by its derivatives."""
+def _step_left(at: Minimum, moving: Indices) -> tuple[Array, float]:
+    """Return the Gauss-Newton step that is left, and how far q falls along it, by its derivatives."""
+    free = moving[~at.at_bound[moving]]
     rows, means = at.objective.priors
     influence, _ = at.objective.influence(at.residuals)
     weights = np.where(at.residuals == 0, 1.0, influence / np.where(at.residuals == 0, 1.0, at.residuals))
     J = np.concatenate([np.sqrt(weights)[:, None] * at.jacobian, rows])[:, free]
     gradient = at.jacobian[:, free].T @ influence + rows[:, free].T @ (rows @ at.theta - means)
-    step = np.linalg.lstsq(J.T @ J, gradient, rcond=1e-12)[0]
-    return max(0.0, float(gradient @ step))
+    step = np.zeros(len(at.theta))
+    step[free] = -np.linalg.lstsq(J.T @ J, gradient, rcond=1e-12)[0]
+    return step, max(0.0, -float(gradient @ step[free]))
 
 
 def _scaled(at: Minimum) -> Minimum:
