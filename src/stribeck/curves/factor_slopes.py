@@ -12,13 +12,11 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.parts import part_names
 from stribeck.contacts.with_parts import factor_exponents
-from stribeck.numerics.settings import HALF_DIGITS
+from stribeck.numerics.settings import LOG_STEP
 from stribeck.quantities.outputs import GROUPS
 from stribeck.solver.solve import solve
 
 __all__ = ["rest_derivatives", "through_factor"]
-
-LOG_STEP = HALF_DIGITS**0.5  # Step of a logarithm in differences of states, which leave half of the digits
 
 
 def through_factor(contact: Contact, asperities: float) -> dict[str, float]:

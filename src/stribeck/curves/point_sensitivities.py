@@ -20,8 +20,9 @@ from stribeck.contacts.with_parts import admissible_steps, model_at, models_at_b
 from stribeck.curves.factor_slopes import rest_derivatives, through_factor
 from stribeck.equations.point.observables import WITHIN, FrictionWithin, observables
 from stribeck.equations.point.system import Equations, Unknowns
-from stribeck.quantities.outputs import AREA
-from stribeck.solver.point.sensitivity import GROUPS, LOG_STEP, derivatives_along, state_derivatives
+from stribeck.numerics.settings import LOG_STEP
+from stribeck.quantities.outputs import AREA, GROUPS
+from stribeck.solver.point.sensitivity import derivatives_along, state_derivatives
 from stribeck.solver.point.solution import PointSolution, finish_point
 from stribeck.solver.point.solve import solve_cold
 from stribeck.solver.point.state import PointObservables, with_area

@@ -88,9 +88,9 @@ class FineOperators:
         return found.reshape(mesh.size, -1)
 
     def lowered(self, pressure: Array) -> Array:
-        """Return rows of fine ``pressure`` at the coarse nodes, without their highest degrees."""
-        density = (pressure * self.mesh.stretch).reshape(len(pressure), self.mesh.panels, -1)
-        return np.asarray((density @ self._lowered.T).reshape(len(pressure), -1) / self.coarse.stretch)
+        """Return fine ``pressure`` at the coarse nodes, without its highest degrees."""
+        density = (pressure * self.mesh.stretch).reshape(self.mesh.panels, -1)
+        return np.asarray((density @ self._lowered.T).ravel() / self.coarse.stretch)
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,20 +127,18 @@ class EnrichedOperators(Operators):
         return found
 
     def by_kernel(self, pressure: Any, d: Any) -> Any:
-        """Return the deflection under rows of finer pressure, over the cavity stretch, without its logarithm."""
+        """Return the deflection under finer pressure, over the cavity stretch, without its logarithm."""
         mesh = self.finer.mesh
         if self.deflection_by_tail is not None and self.tail is not None:
             own = slice(-mesh.order, None)
-            density = (pressure[:, own] * mesh.stretch[own]) @ self.tail.interpolation(mesh.order).T
+            density = (pressure[own] * mesh.stretch[own]) @ self.tail.interpolation(mesh.order).T
             inner = pressure.copy()
-            inner[:, own] = 0.0
+            inner[own] = 0.0
             return self._by_degrees(inner, None) + density @ self.deflection_by_tail.T
         return self._by_degrees(pressure, d)
 
     def _by_degrees(self, pressure: Array, d: Any) -> Array:
         fine = self.finer
-        density = (pressure * fine.mesh.stretch).reshape(len(pressure), fine.mesh.panels, -1)
+        density = (pressure * fine.mesh.stretch).reshape(fine.mesh.panels, -1)
         highest = density @ reference(fine.mesh.order).to_legendre[fine.coarse.order :].T
-        return np.asarray(
-            super().by_kernel(fine.lowered(pressure), d) + highest.reshape(len(pressure), -1) @ fine.of_highest.T
-        )
+        return np.asarray(super().by_kernel(fine.lowered(pressure), d) + fine.of_highest @ highest.ravel())

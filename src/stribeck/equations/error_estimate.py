@@ -20,7 +20,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from stribeck._types import Array, Flags, Indices
+from stribeck._types import Array, Flags
 from stribeck.equations.drag import FilmOnMesh, viscous_friction
 from stribeck.equations.enriched import EnrichedOperators, FineOperators
 from stribeck.equations.film import is_rough, is_thinning, jump_of
@@ -30,10 +30,12 @@ from stribeck.equations.observables import (
     ROW,
     Observables,
     changes,
+    coordinate,
     drag_scales,
+    stretch_of,
 )
-from stribeck.equations.position_error import position_errors
-from stribeck.equations.state import StackedStates
+from stribeck.equations.position_error import position_error
+from stribeck.equations.state import State
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error
 from stribeck.numerics.settings import DEFECT_SAFETY, EPSILON, FLOOR, NEGLIGIBLE, SAFETY, SIGN_PATTERNS
 from stribeck.numerics.trace import Trace, act
@@ -44,7 +46,7 @@ __all__ = [
     "GAP_ROWS",
     "ErrorEstimate",
     "FineOperators",
-    "error_estimates",
+    "error_estimate",
     "gap_is_resolved",
     "perturbations",
 ]
@@ -108,30 +110,30 @@ class ErrorEstimate:
 class Perturbations:
     """Changes of unknowns and friction by defect and rounding: the possible errors of states."""
 
-    unknowns: Array = field(repr=False)  # The defect first, then the patterns of rounding: (1 + SIGN_PATTERNS, rows, unknowns)
-    friction: Array = field(repr=False)  # Of the friction integrals on the finer nodes: (3, rows)
+    unknowns: Array = field(repr=False)  # The defect first, then the patterns of rounding: (1 + SIGN_PATTERNS, unknowns)
+    friction: Array = field(repr=False)  # Of the friction integrals on the finer nodes
 
 
-def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -> Perturbations:
-    """Return the changes of states by defect, quadrature and rounding; ``observed`` as in :func:`error_estimates`."""
-    op, at, y = states.equations.operators, states.equations.layout, states.y
-    coarse, mesh, film, u = fine.coarse, fine.mesh, states.equations.film, states.equations.fields(y)
-    equations = replace(states.equations, operators=EnrichedOperators.of(op, fine))
+def perturbations(state: State, observed: Array, fine: FineOperators) -> Perturbations:
+    """Return the changes of a state by defect, quadrature and rounding; ``observed`` are its observables."""
+    op, at, y = state.equations.operators, state.equations.layout, state.y
+    coarse, mesh, film, u = fine.coarse, fine.mesh, state.equations.film, state.equations.fields(y)
+    equations = replace(state.equations, operators=EnrichedOperators.of(op, fine))
     far_gap, integral = equations.far_gap(u), equations.operators.integral
     gap = np.exp(coarse.to_order(np.log(u.gap / coarse.far), mesh.order)) * mesh.far
     own, finer = slice(-coarse.order, None), slice(-mesh.order, None)  # through infinity, where the gap holds a logarithm
-    smooth = u.gap[:, own] - far_gap(coarse.nodes[own])
-    gap[:, finer] = smooth @ between_orders(coarse.order, mesh.order) + far_gap(mesh.nodes[finer])
+    smooth = u.gap[own] - far_gap(coarse.nodes[own])
+    gap[finer] = smooth @ between_orders(coarse.order, mesh.order) + far_gap(mesh.nodes[finer])
     # On panels with a kink, or too wide for the shape, the gap between the nodes is not that of their polynomials.
     gap = np.maximum(gap + op.model.profile.missed(coarse, mesh, u.exit), NEGLIGIBLE * gap)
     fluid = None if u.pressure is None else coarse.to_order(u.pressure * coarse.stretch, mesh.order) / mesh.stretch
-    flat = np.asarray((np.abs(u.gap - u.flux_gap) < NEGLIGIBLE * u.gap).reshape(len(y), coarse.panels, -1).all(axis=2))
+    flat = np.asarray((np.abs(u.gap - u.flux_gap) < NEGLIGIBLE * u.gap).reshape(coarse.panels, -1).all(axis=1))
     clip = _clip_to_coarse_error(coarse, flat, mesh.order) if is_thinning(film) and flat.any() else None
 
     known = u._replace(gap=gap, pressure=fluid)  # at the finer nodes
     slopes = equations.gradient(film, known)
     if flat.any():
-        smooth = states.equations.gradient(film, u)
+        smooth = state.equations.gradient(film, u)
         if clip is not None:
             smooth = clip(slopes, smooth)
         elif not is_rough(film):
@@ -140,11 +142,11 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
             by_flux = Trace.number("flux_gap", u.flux_gap)
             conducted, finer_conducted = (
                 each.gradient(film, at_nodes._replace(flux_gap=by_flux)).columns["flux_gap"]
-                for each, at_nodes in ((states.equations, u), (equations, known))
+                for each, at_nodes in ((state.equations, u), (equations, known))
             )
             missing = np.divide(smooth, conducted, out=np.zeros_like(smooth), where=conducted != 0)
             smooth = coarse.to_order(missing, mesh.order) * finer_conducted
-        slopes = np.where(np.repeat(flat, mesh.order, axis=1), smooth, slopes)
+        slopes = np.where(np.repeat(flat, mesh.order), smooth, slopes)
     jump = jump_of(film)
     jumps = None if jump is None else jump(gap, fluid)
     if jumps is not None:
@@ -155,32 +157,32 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
         fluid = unresolved = integrated
     else:  # what the nodes hold of it is a row of its own; through infinity it may have a kink
         unresolved = fluid + integrated - coarse.to_order(lowered * coarse.stretch, mesh.order) / mesh.stretch
-        fluid[:, finer] = unresolved[:, finer] = integrated[:, finer]
+        fluid[finer] = unresolved[finer] = integrated[finer]
     contact = equations.contact(gap)
     at_end = slopes if equations.ending is film else equations.gradient(equations.ending, known)
     rows = equations.balances(u, contact + unresolved, slopes, at_end)
     rounding = _rounding(equations, u, rows.gap, slopes)
     if rows.exit is not None:
-        steep, missed = _at_exit(states.equations, u)
+        steep, missed = _at_exit(state.equations, u)
         rounding = rounding._replace(exit=SAFETY * EPSILON * steep)
         rows = rows._replace(exit=np.abs(rows.exit) + steep * missed)
     if lowered is not None:
         missing = u.pressure - lowered
-        missing[:, own] = 0.0
+        missing[own] = 0.0
         rows = rows._replace(pressure=missing)
-    residual = np.zeros((1 + SIGN_PATTERNS, *y.shape))
+    residual = np.zeros((1 + SIGN_PATTERNS, y.size))
     for place, defect, rounded in zip(Fields._fields, rows, rounding, strict=True):
         if defect is not None:
-            residual[0, :, getattr(at, place)] = defect
+            residual[0, getattr(at, place)] = defect
         if rounded is not None:
-            residual[1:, :, getattr(at, place)] = rounded
-    residual[1:] *= _signs(coarse.panels, coarse.order, at.size - at.numbers.start, at.numbers.start)[:, None]
-    known_friction = observed[:, DRAG_ROWS].T
+            residual[1:, getattr(at, place)] = rounded
+    residual[1:] *= _signs(coarse.panels, coarse.order, at.size - at.numbers.start, at.numbers.start)
+    known_friction = observed[DRAG_ROWS]
     friction = known_friction
     if equations.is_sliding:
         film_on_mesh = FilmOnMesh(integral, gap, fluid, contact, equations.operators.load, clip)
-        friction = np.stack([each[:, 0] for each in viscous_friction(states.equations, u, states.load, film_on_mesh)])
-    return Perturbations(states.correction(residual), np.abs(friction - known_friction))
+        friction = np.concatenate(viscous_friction(state.equations, u, float(state.groups.load), film_on_mesh))
+    return Perturbations(state.correction(residual), np.abs(friction - known_friction))
 
 
 def _rounding(equations: Equations, u: Fields, shape: Array, slopes: Array) -> Fields:
@@ -207,9 +209,8 @@ def _at_exit(equations: Equations, u: Fields) -> tuple[Array, Array]:
     left = slice((op.integral.middle - 1) * op.mesh.order, op.integral.middle * op.mesh.order)
     traced = u._replace(gap=Trace.number("gap", u.gap))
     by_gap = equations.gradient(equations.ending, traced).columns["gap"]
-    steep = np.abs(by_gap[:, left.stop - 1] * u.gap[:, left.stop - 1])[:, None]
-    missed = interpolation_error(np.log(u.gap[:, left] / op.mesh.far[left]))
-    return equations.flux_scale * steep, missed[:, None]
+    steep = np.abs(by_gap[left] * u.gap[left])[-1:]
+    return equations.flux_scale * steep, interpolation_error(np.log(u.gap[left] / op.mesh.far[left]))
 
 
 def _clip_to_coarse_error(coarse: Mesh, flat: Flags, order: int) -> Callable[[Array, Array], Array]:
@@ -226,14 +227,12 @@ def _clip_to_coarse_error(coarse: Mesh, flat: Flags, order: int) -> Callable[[Ar
     return clip
 
 
-def interpolation_errors(states: StackedStates, minimum_positions: Array, central_positions: Array) -> Array:
-    """Return the absolute errors of the interpolated central and minimum gap, shape (2, rows), at coordinates of the mesh."""
-    mesh = states.equations.operators.mesh
-    lowest = np.clip(np.searchsorted(mesh.edges, minimum_positions) - 1, 0, mesh.panels - 1)
-    central = np.searchsorted(mesh.edges, central_positions, side="right") - 1
-    panels = np.stack([central, lowest])
-    gap = states.y[:, states.equations.layout.gap].reshape(len(lowest), mesh.panels, -1)[np.arange(len(lowest)), panels]
-    return np.asarray(_between_nodes(mesh, gap, panels) * gap.min(axis=2))
+def interpolation_errors(mesh: Mesh, gap: Array, lowest: float, centre: float) -> Array:
+    """Return the absolute errors of the interpolated central and minimum gap, at coordinates of the mesh."""
+    lowest_panel = min(max(int(np.searchsorted(mesh.edges, lowest)) - 1, 0), mesh.panels - 1)
+    panels = [int(np.searchsorted(mesh.edges, centre, side="right")) - 1, lowest_panel]
+    gap = gap.reshape(mesh.panels, -1)[panels]
+    return np.asarray(_between_nodes(mesh, gap, panels) * gap.min(axis=1))
 
 
 def gap_is_resolved(mesh: Mesh, gap: Array, rtol: float, *, centre: float = 0.0, spread: float = 0.0) -> bool:
@@ -246,8 +245,8 @@ def gap_is_resolved(mesh: Mesh, gap: Array, rtol: float, *, centre: float = 0.0,
     return bool((_between_nodes(mesh, gap.reshape(mesh.panels, -1)[panels], panels) <= rtol).all())
 
 
-def _between_nodes(mesh: Mesh, gap: Array, panels: Indices | list[int]) -> Array:
-    """Return the relative errors of gaps, shape (..., order), interpolated between the nodes of their ``panels``."""
+def _between_nodes(mesh: Mesh, gap: Array, panels: list[int]) -> Array:
+    """Return the relative errors of gaps, shape (panels, order), interpolated between the nodes of their ``panels``."""
     return np.asarray(SAFETY * interpolation_error(np.log(gap / mesh.far.reshape(mesh.panels, -1)[panels])))
 
 
@@ -259,41 +258,35 @@ def _signs(panels: int, order: int, numbers: int, fields: int) -> Array:
     return np.hstack([nodal, np.zeros((SIGN_PATTERNS, fields - panels * order)), signs[:, :numbers]])
 
 
-def error_estimates(states: StackedStates, observed: list[Observables], fine: FineOperators) -> list[ErrorEstimate]:
-    """Return the estimated errors of the observables ``observed``."""
+def error_estimate(state: State, observed: Observables, fine: FineOperators) -> ErrorEstimate:
+    """Return the estimated errors of the observables of a state."""
     # At speed zero the values may be those of the same state under another load, see stribeck.solver.at_rest.
-    values = np.array([one.array() for one in observed])
-    changed = perturbations(states, values, fine)
-    effects = np.abs(changes(states.equations, states.y, states.load, changed.unknowns)).transpose(1, 2, 0)
-    op, positions = states.equations.operators, np.array([one.minimum_position for one in observed])
-    centres, stretch = np.zeros(len(values)), np.ones(len(values))
-    if op.has_exit:
-        d, exits = states.equations.cavity_stretch(states.y), states.y[:, states.equations.layout.exit.start]
-        stretch = stretch if d is None else d[:, 0]
-        centres, positions = -exits / stretch, (positions - exits) / stretch
-    effects[:, DRAG_ROWS, 0] += changed.friction.T
+    equations, y, values = state.equations, state.y, observed.array()
+    mesh, u = equations.operators.mesh, equations.fields(y)
+    changed = perturbations(state, values, fine)
+    effects = np.abs(changes(equations, y, float(state.groups.load), changed.unknowns))
+    effects[0, DRAG_ROWS] += changed.friction
+    place = coordinate(u, observed.minimum_position)
     interpolation = np.zeros_like(values)
-    interpolation[:, GAP_ROWS] = interpolation_errors(states, positions, centres).T
+    interpolation[GAP_ROWS] = interpolation_errors(mesh, u.gap, place, coordinate(u, 0.0))
     scales = np.abs(values)
-    scales[:, POSITION_ROWS] = np.maximum(1.0, scales[:, POSITION_ROWS])
-    scales[:, DRAG_ROWS] = drag_scales(values)
-    scales[:, SHARE_ROWS] = 1.0
-    scales[:, ROW["offset"]] = np.maximum(scales[:, ROW["offset"]], FLOOR)
-    if not states.equations.is_sliding:
-        scales[:, GAP_ROWS] = np.maximum(scales[:, GAP_ROWS], FLOOR * states.equations.law.decay_length)
+    scales[POSITION_ROWS] = np.maximum(1.0, scales[POSITION_ROWS])
+    scales[DRAG_ROWS] = drag_scales(values)
+    scales[SHARE_ROWS] = 1.0
+    scales[ROW["offset"]] = max(scales[ROW["offset"]], FLOOR)
+    if not equations.is_sliding:
+        scales[GAP_ROWS] = np.maximum(scales[GAP_ROWS], FLOOR * equations.law.decay_length)
     scales[scales == 0] = 1.0
-    rounding = SAFETY * np.sqrt((effects[:, :, 1:] ** 2).mean(axis=2))
-    gap = states.y[:, states.equations.layout.gap]
+    rounding = SAFETY * np.sqrt((effects[1:] ** 2).mean(axis=0))
     minimum = ROW["minimum_gap"]
-    depth = (effects[:, minimum, 0] + interpolation[:, minimum] + rounding[:, minimum]) / gap.min(axis=1)
-    of_gap = changed.unknowns[:, :, states.equations.layout.gap]
-    places = stretch * position_errors(op.mesh, gap, of_gap, positions, depth)
-    discretisation = DEFECT_SAFETY * effects[:, :, 0]
-    if op.has_exit:
-        places = places + (discretisation + rounding)[:, ROW["exit_position"]]
+    depth = (effects[0, minimum] + interpolation[minimum] + rounding[minimum]) / u.gap.min()
+    of_gap = changed.unknowns[:, equations.layout.gap]
+    of_place = stretch_of(u) * position_error(mesh, u.gap, of_gap, place, float(depth))
+    discretisation = DEFECT_SAFETY * effects[0]
+    if u.exit is not None:
+        of_place += float((discretisation + rounding)[ROW["exit_position"]])
     missing = np.isnan(values)
-    missing[:, : len(NAMES)] = False
+    missing[: len(NAMES)] = False
     for part in (discretisation, interpolation, rounding):
         part[missing] = math.nan
-    parts = (discretisation, interpolation, rounding, scales, places.tolist())
-    return [ErrorEstimate(*row) for row in zip(*parts, strict=True)]
+    return ErrorEstimate(discretisation, interpolation, rounding, scales, of_place)

@@ -39,16 +39,9 @@ def gap_at(mesh: Mesh, h: Array, x: Array, far_gap: Callable[[Array], Array] = f
     return np.asarray(gap)
 
 
-def central_gap(mesh: Mesh, h: Array) -> Array:
-    """Return the gap at zero, at the left end of a panel, for every row of ``h``."""
-    first = int(np.searchsorted(mesh.edges, 0.0)) * mesh.order
-    nodes = slice(first, first + mesh.order)
-    return np.asarray(np.exp(np.log(h[..., nodes] / mesh.far[nodes]) @ reference(mesh.order).left_end) * mesh.scale**2)
-
-
-def gap_beside(mesh: Mesh, h: Array, x: Any) -> tuple[Any, Any, slice, Array]:
+def gap_beside(mesh: Mesh, h: Array, x: float) -> tuple[Any, Any, slice, Array]:
     """Return the gap and its slope at a coordinate in the contact, the nodes of its panel, and the row of ln(gap) there."""
-    k = min(max(int(np.searchsorted(mesh.edges, x.real, side="right")) - 1, 0), mesh.panels - 2)
+    k = min(max(int(np.searchsorted(mesh.edges, x, side="right")) - 1, 0), mesh.panels - 2)
     width, nodes = float(mesh.half_widths[k]), slice(k * mesh.order, (k + 1) * mesh.order)
     s, before, last = (x - float(mesh.centres[k])) / width, 0.0, 1.0
     legendre_of_s = [last]
@@ -56,9 +49,9 @@ def gap_beside(mesh: Mesh, h: Array, x: Any) -> tuple[Any, Any, slice, Array]:
         before, last = last, ((2 * n + 1) * s * last - n * before) / (n + 1)
         legendre_of_s.append(last)
     row = np.array(legendre_of_s) @ reference(mesh.order).to_legendre
-    logs, far = np.log(h[nodes] / mesh.far[nodes]), mesh.scale**2 + x * x
-    value = np.exp(row @ logs) * far
-    slope = row @ (_slope_at_nodes(mesh.order) @ logs) / width
+    logs, far = np.log(h[..., nodes] / mesh.far[nodes]), mesh.scale**2 + x * x
+    value = np.exp(logs @ row) * far
+    slope = logs @ (row @ _slope_at_nodes(mesh.order)) / width
     return value, value * (slope + 2 * x / far), nodes, row
 
 

@@ -14,12 +14,13 @@ import numpy as np
 from stribeck._types import Array, Numbers
 from stribeck.contacts.friction import Definition
 from stribeck.equations.drag import FilmOnMesh, viscous_friction
-from stribeck.equations.gap import central_gap, gap_beside, minimum_gaps
+from stribeck.equations.gap import gap_beside, minimum_gap
 from stribeck.equations.line import LOAD, Equations, Fields
+from stribeck.numerics.panels import Mesh
 from stribeck.numerics.trace import Trace, act, value_of
 from stribeck.quantities.outputs import ALL_NAMES
 
-__all__ = ["ROW", "Observables", "changes", "measured", "minimum_positions", "observables", "observables_of_stacked"]
+__all__ = ["ROW", "Observables", "changes", "measured", "minimum_of", "observables"]
 
 ROW = {name: row for row, name in enumerate(ALL_NAMES)}  # Index of each in such an array
 
@@ -74,46 +75,37 @@ def drag_parts(values: Array) -> Array:
 
 def observables(equations: Equations, y: Array, load: float) -> Observables:
     """Return the observables of the unknowns ``y`` of ``equations`` at the load group ``load``."""
-    return observables_of_stacked(equations, y[None], load)[0]
-
-
-def observables_of_stacked(equations: Equations, y: Array, load: Numbers) -> list[Observables]:
-    """Return the observables of many states, the unknowns ``y`` of each in a row and their load groups in a column."""
-    u = equations.fields(y)
-    found = dict.fromkeys(ALL_NAMES, np.full(len(y), math.nan))
-    found |= {name: value[:, 0] for name, value in measured(equations, u, load).items()}
-    found["minimum_position"], found["minimum_gap"] = _minima(equations, y)
-    found["central_gap"] = central_gaps(equations, u)
-    rows = zip(*(found[each.name].tolist() for each in fields(Observables)), strict=True)
-    # One nan for all that a film has not, so that equal observables compare as such.
-    return [Observables(*(math.nan if math.isnan(value) else value for value in row)) for row in rows]
-
-
-def minimum_positions(equations: Equations, y: Array) -> Array:
-    """Return the position of the minimum gap of each row of unknowns."""
-    return _minima(equations, y)[0]
-
-
-def _minima(equations: Equations, y: Array) -> tuple[Array, Array]:
-    """Return position and value of the minimum gap of each row of unknowns."""
     mesh, u = equations.operators.mesh, equations.fields(y)
-    positions, gaps = minimum_gaps(mesh, np.log(y[:, equations.layout.gap][:, : -mesh.order]))[:2]
+    found = dict.fromkeys(ALL_NAMES, math.nan)
+    found |= {name: float(value[0]) for name, value in measured(equations, u, load).items()}
+    found["minimum_position"], found["minimum_gap"] = minimum_of(equations, y)
+    found["central_gap"] = float(gap_beside(mesh, u.gap, coordinate(u, 0.0))[0])
+    values = (found[each.name] for each in fields(Observables))
+    # One nan for all that a film has not, so that equal observables compare as such.
+    return Observables(*(math.nan if math.isnan(value) else value for value in values))
+
+
+def minimum_of(equations: Equations, y: Array) -> tuple[float, float]:
+    """Return position and value of the minimum gap."""
+    u = equations.fields(y)
+    place, gap = minimum_gap(equations.operators.mesh, u.gap)
     if u.exit is not None:
-        positions = u.exit[:, 0] + (1.0 if u.cavity_stretch is None else u.cavity_stretch[:, 0]) * positions
-    return positions, gaps
+        place = float(u.exit[0]) + stretch_of(u) * place
+    return place, gap
 
 
-def central_gaps(equations: Equations, u: Fields) -> Array:
-    """Return the gap at the centre of the contact of each row."""
-    mesh = equations.operators.mesh
-    if u.exit is None:
-        return central_gap(mesh, u.gap)
-    places = (-u.exit / (1.0 if u.cavity_stretch is None else u.cavity_stretch))[:, 0].tolist()
-    return np.array([gap_beside(mesh, row, x)[0] for row, x in zip(u.gap, places, strict=True)])
+def stretch_of(u: Fields) -> float:
+    """Return the stretch of the frame: one where the film does not re-form."""
+    return 1.0 if u.cavity_stretch is None else float(u.cavity_stretch[0])
+
+
+def coordinate(u: Fields, x: float) -> float:
+    """Return the coordinate of the mesh at a position."""
+    return x if u.exit is None else (x - float(u.exit[0])) / stretch_of(u)
 
 
 def measured(equations: Equations, u: Fields, load: Numbers, by: str | None = None) -> dict[str, Any]:
-    """Return what follows from fields by integrals, of values in rows or of traces; also traced by ln of one group."""
+    """Return what follows from fields by integrals, of values or of traces; also traced by ln of one group."""
     op, d = equations.operators, u.cavity_stretch
     stretch = 1.0 if d is None else d
     contact = equations.contact(u.gap, by)
@@ -134,38 +126,27 @@ def measured(equations: Equations, u: Fields, load: Numbers, by: str | None = No
     return found
 
 
-def changes(equations: Equations, y: Array, load: Numbers, dy: Array) -> Array:
+def changes(equations: Equations, y: Array, load: float, dy: Array) -> Array:
     """Return the changes of the observables with small changes ``dy`` of the unknowns, shape (..., len(ALL_NAMES))."""
-    at, u, du = equations.layout, equations.fields(y), equations.fields(dy)
+    u, du = equations.fields(y), equations.fields(dy)
     moving = Fields(*(None if value is None else Trace(value, None, {ALONG: by}) for value, by in zip(u, du, strict=True)))
     found = np.zeros((*dy.shape[:-1], len(ALL_NAMES)))
     for name, value in measured(equations, moving, load).items():
         if isinstance(value, Trace):
             found[..., ROW[name]] = value.columns[ALONG][..., 0]
-    rows = np.atleast_2d(y)
-    each = dy.reshape(*dy.shape[: dy.ndim - y.ndim], *rows.shape)
-    mesh = equations.operators.mesh
-    lowest = minimum_gaps(mesh, np.log(rows[:, at.gap][:, : -mesh.order]))[0]
-    for k, own in enumerate(rows):
-        of_row = equations.fields(each[..., k, :])
-        place, moving = _centre(equations, equations.fields(own), of_row)
-        here = found.reshape(*found.shape[: dy.ndim - y.ndim], len(rows), -1)[..., k, :]
-        here[..., ROW["central_gap"]] = _of_gap(equations, own[at.gap], of_row.gap, place, moving)
-        # The minimum moves along a gap without a slope.
-        here[..., ROW["minimum_gap"]] = _of_gap(equations, own[at.gap], of_row.gap, float(lowest[k]), 0.0)
+    mesh, centre = equations.operators.mesh, coordinate(u, 0.0)
+    moved: Any = 0.0  # the centre on the mesh
+    if u.exit is not None:
+        moved = -du.exit[..., 0] / stretch_of(u)
+    if u.cavity_stretch is not None:
+        moved = moved - centre / stretch_of(u) * du.cavity_stretch[..., 0]
+    found[..., ROW["central_gap"]] = _of_gap(mesh, u.gap, du.gap, centre, moved)
+    # The minimum moves along a gap without a slope.
+    found[..., ROW["minimum_gap"]] = _of_gap(mesh, u.gap, du.gap, minimum_gap(mesh, u.gap)[0], 0.0)
     return found
 
 
-def _centre(equations: Equations, u: Fields, du: Fields) -> tuple[float, Any]:
-    """Return the place of the centre of the contact on the mesh, and its changes."""
-    if u.exit is None or du.exit is None:
-        return 0.0, 0.0
-    stretch = 1.0 if u.cavity_stretch is None else float(u.cavity_stretch[0])
-    place, moving = -float(u.exit[0]) / stretch, -du.exit[..., 0] / stretch
-    return place, moving if du.cavity_stretch is None else moving - place / stretch * du.cavity_stretch[..., 0]
-
-
-def _of_gap(equations: Equations, gap: Array, change: Array, place: float, moving: Any) -> Array:
+def _of_gap(mesh: Mesh, gap: Array, change: Array, place: float, moving: Any) -> Array:
     """Return the changes of the gap's polynomial at a place that moves."""
-    middle, slope, nodes, weights = gap_beside(equations.operators.mesh, gap, place)
+    middle, slope, nodes, weights = gap_beside(mesh, gap, place)
     return np.asarray(change[..., nodes] @ (middle * weights / gap[nodes]) + slope * moving)

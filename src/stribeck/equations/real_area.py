@@ -14,12 +14,10 @@ from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.line import LOAD
 from stribeck.equations.state import State
 from stribeck.numerics.panels import Mesh
-from stribeck.numerics.settings import HALF_DIGITS
+from stribeck.numerics.settings import LOG_STEP
 from stribeck.quantities.outputs import GROUPS
 
 __all__ = ["area_by_pressure", "area_derivatives", "area_of_state", "real_area"]
-
-LOG_STEP = HALF_DIGITS**0.5  # Step of a logarithm in central differences, whose error is its square
 
 
 def real_area(groups: Groups, mesh: Mesh, stretch: float, contact: Array, load_error: float) -> tuple[float, float]:

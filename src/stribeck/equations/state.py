@@ -7,13 +7,12 @@ gap over ``scale**2 + x**2``, which is smooth and bounded on the whole line, and
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.polynomial import legendre
 
-from stribeck._types import Array, Numbers
+from stribeck._types import Array
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.film import is_thinning
 from stribeck.equations.gap import minimum_gap
@@ -34,16 +33,6 @@ from stribeck.quantities.outcome import Outcome
 
 # Gap from which rounding is more than the steps by which coarse states are found [u_Hz].
 MIN_GAP = ROUNDING / COARSE_STEP
-
-
-@dataclass(frozen=True, eq=False)
-class StackedStates:
-    """States that share a mesh, as observables and error estimates take them."""
-
-    equations: Equations  # Theirs; speed and law hold columns where there are several states
-    y: Array  # The unknowns of each
-    load: Numbers  # Load group; a column of them where there are several states
-    correction: Callable[[Array], Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,13 +115,10 @@ class State:
         """Return the state without Newton's last inverse, which is as large as an operator and serves only its neighbour."""
         return replace(self, root=replace(self.root, inverse=None))
 
-    @property
-    def stacked(self) -> StackedStates:
-        """The state as the only one of its mesh."""
-        inverse = self.root.inverse
-        assert inverse is not None
-        units = self.equations.units(self.y)
-        return StackedStates(self.equations, self.y[None], float(self.groups.load), lambda r: units * inverse(r))
+    def correction(self, residuals: Array) -> Array:
+        """Return the changes of the unknowns that remove small residuals, by Newton's last inverse."""
+        assert self.root.inverse is not None
+        return np.asarray(self.equations.units(self.y) * self.root.inverse(residuals))
 
     @property
     def effort(self) -> float:

@@ -10,6 +10,7 @@ NEGLIGIBLE = 0.1  # Share of a tolerance, an error or a step that does not count
 # Rounding of a nodal gap, a difference of terms of order one; with less, noise counts as error of the mesh.
 ROUNDING = 16 * EPSILON
 HALF_DIGITS = EPSILON**0.5  # What is smaller beside one is known to no digit in a difference quotient, or is no progress
+LOG_STEP = HALF_DIGITS**0.5  # Step of a logarithm in central differences: they err by its square, and rounding by less
 SAME_PLACE = EPSILON**0.75  # Distance over the scale of a mesh below which two places are one: nodes between are the same
 
 SHARE = 0.5  # Share of a tolerance that each of two causes of error may take: the states of a path and what lies between them

@@ -9,7 +9,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.groups import Groups, contact_law
-from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, error_estimates
+from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, error_estimate
 from stribeck.equations.film import decay_of, is_rough
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
@@ -89,7 +89,7 @@ def converge(
             state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
         state = state.corrected() if own_inverse else state
         fine, values = FineOperators(mesh), values_of(state, groups)
-        [estimate] = error_estimates(state.stacked, [values], fine)
+        estimate = error_estimate(state, values, fine)
         # Where a film ends, the rate falls to zero in a fluid without a plateau, or roughness stops the flow, two meshes may
         # share the cause of their error.
         film = state.equations.film
@@ -134,7 +134,7 @@ def tolerance_factor(excess: float) -> float:
 def verify(state: State, groups: Groups, fine: FineOperators, rtol: float) -> RefinedState:
     """Return the state with observables and errors, converged if these are at most ``rtol``."""
     values = values_of(state, groups)
-    [estimate] = error_estimates(state.stacked, [values], fine)
+    estimate = error_estimate(state, values, fine)
     return RefinedState(groups, state, values, estimate, outcome_for(estimate, rtol), fine=fine)
 
 

@@ -18,7 +18,7 @@ from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.drag import friction_scale
 from stribeck.equations.film import is_thinning
-from stribeck.equations.gap import central_gap, minimum_gaps
+from stribeck.equations.gap import gap_beside, minimum_gap
 from stribeck.equations.line import LOAD
 from stribeck.equations.operators import Operators
 from stribeck.equations.real_area import area_by_pressure
@@ -155,5 +155,4 @@ class March:
         asperities = mesh.weights @ contact / LOAD
         rubbing = area_by_pressure(self.groups, mesh, 1.0, contact) if self.by_area else asperities
         viscous = friction_scale(self.groups.load, self.groups.speed) * (mesh.weights @ sheared)
-        lowest = minimum_gaps(mesh, np.log(u.gap[None, : -mesh.order]))[1][0]
-        return np.array([asperities, rubbing, viscous, central_gap(mesh, u.gap), lowest])
+        return np.array([asperities, rubbing, viscous, gap_beside(mesh, u.gap, 0.0)[0], minimum_gap(mesh, u.gap)[1]])

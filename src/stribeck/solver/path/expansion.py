@@ -18,8 +18,9 @@ from stribeck.contact_laws.continued import ContinuedLaw
 from stribeck.contact_laws.exponential import ExponentialLaw
 from stribeck.contact_laws.scaled import ScaledLaw
 from stribeck.contacts.groups import Groups, contact_law
+from stribeck.equations.gap import gap_beside
 from stribeck.equations.line import LOAD, Equations, Fields
-from stribeck.equations.observables import ROW, central_gaps, measured
+from stribeck.equations.observables import ROW, measured
 from stribeck.numerics.jets import Tape
 from stribeck.numerics.newton import Inverse
 from stribeck.numerics.series import circle, implicit_series, radius
@@ -142,5 +143,5 @@ def _observables_of_rows(equations: Equations, y: Array, load: Array) -> Array:
     found, fields = np.full((len(y), len(ALL_NAMES)), np.nan, complex), equations.fields(y)
     for name, value in measured(equations, fields, load).items():
         found[:, ROW[name]] = value[:, 0]
-    found[:, ROW["central_gap"]] = central_gaps(equations, fields)
+    found[:, ROW["central_gap"]] = gap_beside(equations.operators.mesh, fields.gap, 0.0)[0]
     return found

@@ -60,8 +60,8 @@ class KnotProblem(PathProblem, Protocol):
         """Which observables never change their sign."""
 
     @property
-    def summands(self) -> tuple[int, int]:
-        """Columns of an observable of one sign, and of another one that is smoother in the sum of both."""
+    def summands(self) -> tuple[tuple[int, int], ...]:
+        """Columns of an observable of one sign, and of another one that is smoother in the sum of both, if there are any."""
 
     @property
     def controlled(self) -> Flags:
@@ -95,8 +95,9 @@ class HermitePath(Path):
             straight = at @ values + slope @ slopes
             growing = np.sign(values[0]) * np.exp(at @ logs + slope @ growth)
             found = np.where(keeps, growing, straight)
-            column, (one, other) = np.arange(len(keeps)), self.problem.summands
-            found = found + (straight[:, [one]] - found[:, [one]]) * (column == other)
+            column = np.arange(len(keeps))
+            for one, other in self.problem.summands:
+                found = found + (straight[:, [one]] - found[:, [one]]) * (column == other)
             one, other = self.problem.shares
             if keeps[one] and keeps[other]:
                 ratio = at @ (logs[:, [one]] - logs[:, [other]]) + slope @ (growth[:, [one]] - growth[:, [other]])
@@ -120,12 +121,14 @@ class HermitePath(Path):
         scales = self.problem.scales(straight[0] * units, nodes) / units
         errors = np.stack([knot.errors for knot in self.knots[first : last + 1]]) * scales
         of_logs = np.divide(errors, np.abs(straight[0]), out=np.zeros_like(errors), where=keeps)
-        one, other = self.problem.summands
-        is_sum = np.logical_and(np.arange(len(keeps)) == other, one != other)
-        values, slopes, wrong = (each + is_sum * each[:, [one]] for each in (*straight, errors))
+        values, slopes, wrong = (each.copy() for each in (*straight, errors))
+        for one, other in self.problem.summands:
+            for each in (values, slopes, wrong):
+                each[:, other] += each[:, one]
         of_values = slope_noise(nodes, values, slopes, wrong, s) * self._units(s)
         noise = np.where(keeps, np.abs(found) * slope_noise(nodes, *logs, of_logs, s), of_values)
-        noise[:, other] += noise[:, one] * (one != other)
+        for one, other in self.problem.summands:
+            noise[:, other] += noise[:, one]
         one, other = self.problem.shares
         if keeps[one] and keeps[other]:
             ratio, growth = (each[:, [one]] - each[:, [other]] for each in logs)

@@ -12,10 +12,10 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.contacts.groups import Groups
-from stribeck.equations.observables import DRAG_ROWS, ROW, minimum_positions
+from stribeck.equations.observables import DRAG_ROWS, ROW, minimum_of
 from stribeck.equations.sensitivity import derivatives_along
 from stribeck.equations.state import State
-from stribeck.numerics.settings import EPSILON, HALF_DIGITS
+from stribeck.numerics.settings import EPSILON, LOG_STEP
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS
@@ -33,7 +33,7 @@ class LineKnots(LineStates):
     path = HermitePath
     names = COLUMNS
     shares = (ROW["contact_load_share"], ROW["fluid_load_share"])
-    summands = (ROW["offset"], ROW["offset"])  # the sum of no two is smoother than both
+    summands = ()  # the sum of no two is smoother than both
 
     def __init__(self, groups_at: Callable[[float], Groups], rtol: float) -> None:
         super().__init__(groups_at, rtol)
@@ -74,14 +74,13 @@ class LineKnots(LineStates):
         direction = np.zeros(len(GROUPS))
         direction[(ends > 0).all(axis=0)] = np.diff(np.log(ends[:, (ends > 0).all(axis=0)]), axis=0)[0] / (2 * step)
         slopes, move = derivatives_along(state, direction, (below.model, above.model, 2 * step))
-        before, after = minimum_positions(state.equations, state.y + step * np.array([[-1.0], [1.0]]) * move).tolist()
+        before, after = (minimum_of(state.equations, state.y + each * move)[0] for each in (-step, step))
         return np.append(slopes, (after - before) / (2 * step))
 
     def _slopes_at_rest(self, s: float) -> Array:
         """Return the slopes of the observables by two states beside, as a contact at rest is solved at another load."""
-        step = HALF_DIGITS**0.5  # of central differences, which leave half of the digits
-        rows = [numbers_of(self.neighbours.solved(self.groups_at(s + each)))[0] for each in (-step, step)]
-        return np.asarray((rows[1] - rows[0]) / (2 * step))
+        rows = [numbers_of(self.neighbours.solved(self.groups_at(s + step)))[0] for step in (-LOG_STEP, LOG_STEP)]
+        return np.asarray((rows[1] - rows[0]) / (2 * LOG_STEP))
 
     def guess_at(self, path: HermitePath, s: float) -> State:
         """Return the state at a coordinate of a path, whose fields hold."""

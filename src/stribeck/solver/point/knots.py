@@ -14,7 +14,7 @@ from stribeck.equations.point.observables import MINIMA, OBSERVABLES, WITHIN, Fr
 from stribeck.equations.point.system import Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.hermite import weights_through
-from stribeck.numerics.settings import HALF_DIGITS, MAX_AMPLIFICATION, MIN_LOG_STEP, NEGLIGIBLE, SHARE
+from stribeck.numerics.settings import HALF_DIGITS, LOG_STEP, MAX_AMPLIFICATION, MIN_LOG_STEP, NEGLIGIBLE, SHARE
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import AREA
@@ -38,7 +38,7 @@ ONE_SIGNED = [OBSERVABLES[i] for i in SHARES] + [
     "J_pcx",
     AREA,
 ]
-SUMMANDS = (OBSERVABLES.index("J_pcx"), OBSERVABLES.index("J_published"))
+SUMMANDS = ((OBSERVABLES.index("J_pcx"), OBSERVABLES.index("J_published")),)
 ABSOLUTE = [COLUMNS.index(name) for name in UNIT_SCALED]
 OFFSET = COLUMNS.index("offset")
 WHOLE = [COLUMNS.index(name) for name in ("J_balanced", "J_published")]
@@ -144,12 +144,11 @@ class BallKnots:
             slopes = measured_change(state, moved, change, measure)
         else:
             values = dict(state.values)
-            step = HALF_DIGITS**0.5  # of central differences, which leave half of the digits
-            ends = [solve_cold(self.groups_at(s + each), self.rtol) for each in (step, -step)]
-            slopes = {name: (ends[0].values[name] - ends[1].values[name]) / (2 * step) for name in values}
+            ends = [solve_cold(self.groups_at(s + step), self.rtol) for step in (LOG_STEP, -LOG_STEP)]
+            slopes = {name: (ends[0].values[name] - ends[1].values[name]) / (2 * LOG_STEP) for name in values}
             if self.has_area:
                 values[AREA], ahead, behind = (each.real_contact_area[0] for each in (state, *ends))
-                slopes[AREA] = (ahead - behind) / (2 * step)
+                slopes[AREA] = (ahead - behind) / (2 * LOG_STEP)
             values["J_pcx"] = slopes["J_pcx"] = 0.0  # it has nothing but rounding, which has no sign
         errors = state.errors
         if self.has_area:

@@ -25,20 +25,18 @@ from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
 from stribeck.numerics.krylov import Apply, gmres
-from stribeck.numerics.settings import EPSILON, HALF_DIGITS, MAX_BAND, MAX_STEPS, NEGLIGIBLE
+from stribeck.numerics.settings import COARSE_RTOL, EPSILON, HALF_DIGITS, LOG_STEP, MAX_BAND, MAX_STEPS, NEGLIGIBLE
 from stribeck.quantities.outputs import GROUPS
 from stribeck.solver.point.estimate import Pair
 from stribeck.solver.point.state import PointState
 
-__all__ = ["GROUPS", "LOG_STEP", "changes_along", "derivatives_along", "measured_change", "state_derivatives"]
+__all__ = ["changes_along", "derivatives_along", "measured_change", "state_derivatives"]
 
 Direction = Callable[[float], Groups]
 """Groups, with their model, after a step of the logarithm of a group or an input."""
 
 Measure = Callable[[Equations, Unknowns], Mapping[str, float]]
 """Observables of a state by name."""
-
-LOG_STEP = HALF_DIGITS**0.5  # Step of a logarithm in central differences, whose error is its square
 
 
 def state_derivatives(
@@ -117,7 +115,8 @@ def _solved(linear: Linear, preconditioner: Apply, right: Array, tolerance: floa
     """Return the solution of the linear system to a preconditioned residual, or None where GMRES does not reach it."""
     x, rest, left = np.zeros_like(right), right, 1.0
     while True:
-        here = max(LOG_STEP, tolerance / left)  # the preconditioner is in single precision: the next round removes its error
+        # The preconditioner is in single precision: the next round removes its error.
+        here = max(NEGLIGIBLE * COARSE_RTOL, tolerance / left)
         found = gmres(linear.product, preconditioner, rest, here, MAX_STEPS)
         if not found.left <= here / NEGLIGIBLE:
             return None
