@@ -154,7 +154,7 @@ def test_a_path_that_halves_without_end_ends(monkeypatch):
 class Noisy:
     """A parabola whose values have errors that no more states reduce."""
 
-    path, names, shares, summands = HermitePath, ("one", "other", "third"), (0, 1), (1, 2)
+    path, names, shares, summands = HermitePath, ("one", "other", "third"), (0, 1), ((1, 2),)
     one_signed, controlled = np.zeros(3, dtype=bool), np.ones(3, dtype=bool)
 
     def __init__(self, noise):
