@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array, Indices
+from stribeck._types import Array, Flags, Indices
 from stribeck.fits.model import Prediction
 from stribeck.fits.objective import CAUCHY, Objective
 from stribeck.quantities.units import InputError
@@ -75,10 +75,10 @@ class Minimum:
         return np.asarray(error / self.objective.size)
 
     @property
-    def at_bound(self) -> Array:
+    def at_bound(self) -> Flags:
         """Which logarithms of factors are at one of their bounds."""
         low, high = self.objective.bounds
-        return np.asarray((self.theta - low < AT_BOUND) | (high - self.theta < AT_BOUND))
+        return np.asarray((self.theta - low < AT_BOUND) | (high - self.theta < AT_BOUND), dtype=bool)
 
 
 def minimise(
