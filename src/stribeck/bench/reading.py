@@ -264,11 +264,13 @@ def _on_errors(points: Sequence[Point]) -> list[str]:
 
 def _on_viscosity(points: Sequence[Point], liquid: tuple[Preset, dict[str, Any]] | None) -> list[str]:
     known = [each.temperature for each in points if np.isfinite(each.temperature)]
-    if liquid is not None and known:
-        return [f"Viscosity of {liquid[0].label} at {min(known):.1f} to {max(known):.1f} °C, of each point."]
-    if known and liquid is None:
-        return [
-            f"The temperature was {min(known):.1f} to {max(known):.1f} °C; name the liquid (fluid = 'iso-vg grade=46') to "
-            "have its viscosity there."
-        ]
-    return []
+    if not known:
+        return []
+    lowest, highest = f"{min(known):.1f}", f"{max(known):.1f}"
+    temperature = f"{lowest} °C" if lowest == highest else f"{lowest} to {highest} °C"
+    if liquid is not None:
+        return [f"Viscosity of {liquid[0].label} at {temperature}, of each point."]
+    return [
+        f"The temperature was {temperature}; name the liquid (--fluid 'iso-vg grade=46', in Python fluid=) to have its "
+        "viscosity there."
+    ]

@@ -41,8 +41,11 @@ def bench_command(
 
     Example: stribeck bench rheometer.csv -o curve.csv --arm "15 mm" --track-radius "15 mm"
 
-    The curve is read by stribeck fit as it is.  --case has in its table [bench] these options, columns and units.  --name is
-    the pattern of the names of the files; --per-decade has the bins of a speed that never rests.
+    stribeck fit reads the curve as it is.  --arm makes a torque a friction force, --track-radius a rotation a speed, and
+    --fluid gives the viscosity at the temperature of the file or of --temperature.  --name is the pattern of the file names.
+
+    The table [bench] of --case has these options, columns and units.  --per-decade is the number of bins in a decade of speed
+    where the speed never rests.
     """
     if out is not None:
         from stribeck.files.datasets import CSV_ENDINGS

@@ -159,6 +159,8 @@ def new_command(
     Example: stribeck new seal.toml --seal o-ring
 
     Example: stribeck new ball.toml --geometry point
+
+    --geometry is line or point; --seal is o-ring, u-cup or shaft.
     """
     from stribeck.contacts.groups import check_geometry
 

@@ -286,7 +286,7 @@ FORMS = (
         ),
         value=lambda modulus, radius, load, pressure: _pressed(load, pressure * (4 * radius / (math.pi * modulus)) ** 0.5),
         formula="load + 2 a P, with the half-width a of the contact under both",
-        source="incompressible rubber hands on a pressure as a liquid does; the film is solved between ambient pressures",
+        source="incompressible rubber transmits pressure as a liquid does; the film is solved between ambient pressures",
         error=0.2,
     ),
 )

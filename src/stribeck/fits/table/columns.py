@@ -318,10 +318,11 @@ def _ask_for_the_sum(table: TextTable, abscissa: Abscissa, name: str, settings: 
     said = " or ".join(f"{each:g}" for each in settings.ratios)
     why = "the file has a slide-to-roll ratio" if ratio else f"both surfaces move (slide-to-roll ratio {said})"
     if abscissa == "speed":
+        at_rest = "" if ratio else " If one surface is at rest, write slide_to_roll = 2 in the case."
         raise InputError(
             f"{table.path}: {why}, so that {show(name)} may be the mean of both surface speeds or their sum; say which in "
             f"[fit.columns] of the case: entrainment_speed = {show(name)} (the mean) or speed = {show(name)} (the sum), or "
-            "call the column 'mean speed' or 'sum of speeds'."
+            f"call the column 'mean speed' or 'sum of speeds'.{at_rest}"
         )
     raise InputError(
         f"{table.path}: {why}, so that {show(name)} may be made with the mean of both surface speeds or with their sum; "

@@ -335,7 +335,7 @@ def _friction(
         if arm is None:
             raise InputError(
                 f"{table.path}: {show(torque)} is a torque; its arm makes it a friction force: say arm = '20 mm' in [fit] of "
-                f"the case, or add a column 'arm [mm]'{_without_unit(table, ARM)}. "
+                f"the case (to stribeck bench also --arm '20 mm'), or add a column 'arm [mm]'{_without_unit(table, ARM)}. "
                 f"The columns are {', '.join(map(show, table.written))}."
             )
         lengths, origin = arm
@@ -488,7 +488,7 @@ def _speed_of_rotation(table: TextTable, found: dict[str, list[str]], settings: 
     if radius is None:
         raise InputError(
             f"{table.path}: {show(name)} is a rotation; the radius of its track makes it a speed: say track_radius = '20 mm' "
-            f"in [fit] of the case, or add a column 'track radius [mm]'{_without_unit(table, TRACK)}."
+            f"in [fit] of the case (to stribeck bench also --track-radius '20 mm'), or add a column 'track radius [mm]'{_without_unit(table, TRACK)}."
         )
     lengths, origin = radius
     pairs = zip(_numbers(table, name, "rotation", settings), lengths, strict=True)
