@@ -99,7 +99,6 @@ WRONG = [
     ("contact", "normal_force", "1", " = 1 is not a known key; give load: for a cylinder in N/m, or force"),
     ("contact", "surface_speed_ratio", "1", " = 1 is not a known key; known are radius"),
     ("contact", "deviation", "1", " = 1 is not a known key; it belongs in the table [asperities]."),
-    ("contact", "stroke", "1", " = 1 is not a known key; it belongs in the table [stroke] or in the table [check]."),
     ("contact", "Ra", "1e-6", " = 1e-06 is not a known key; heights are root mean squares"),
     ("contact", "rtol", "1", " = 1 is not a known key; it belongs in the table [solver]."),
     ("contact", "title", "1", " = 1 is not a known key; it belongs at the top"),

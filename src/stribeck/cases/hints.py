@@ -83,13 +83,10 @@ def advice_on(key: str, known: Iterable[str], file: Mapping[str, Iterable[str]] 
     absent = next((hint for words, hint in _HINTS if any(f"_{word}_" in text for word in words)), "")
     if absent:
         return absent
-    places = [
-        f"in the table [{table}]" if table else "at the top of the file, before the first table"
-        for table, keys in (file or {}).items()
-        if key in keys or MEANT.get(key, key) in keys
-    ]
-    if places:
-        return f"it belongs {' or '.join(places)}"
+    for table, keys in (file or {}).items():
+        if key in keys or MEANT.get(key, key) in keys:
+            where = f"in the table [{table}]" if table else "at the top of the file, before the first table"
+            return f"it belongs {where}"
     whole = [name for name in names if len(key) >= MIN_PREFIX_LETTERS and name.startswith(key.lower())]
     # Only a slip of the pen is taken for another key: pressure_viscosity is no viscosity.
     near = whole or difflib.get_close_matches(key.lower(), names, n=1, cutoff=MIN_SIMILARITY)
