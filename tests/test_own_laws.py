@@ -102,6 +102,37 @@ def test_laws_that_are_those_of_the_package_give_their_films():
     assert film(Stiffening(2e-8)) == pytest.approx(film(sb.fluids.Barus("20 1/GPa")), rel=1e-9)
 
 
+@dataclass(frozen=True)
+class Slip(FlowFactors):
+    """Both walls let the fluid slip by a length b times the shear rate there (Navier)."""
+
+    length: float
+    name = "slip"
+
+    @property
+    def parameters(self):
+        return {"length": self.length}
+
+    def scaled(self, units):
+        return replace(self, length=self.length / units.gap)
+
+    def pressure(self, gap):
+        return 1 + 6 * self.length / gap
+
+    def shear(self, gap):
+        return np.zeros_like(gap)
+
+    def friction(self, gap):
+        return gap / (gap + 2 * self.length), np.zeros_like(gap), np.ones_like(gap)  # of shear, valleys, pressure
+
+
+def test_a_film_between_walls_that_slip_is_as_if_they_lay_farther_back():
+    contact = CONTACT.replace(roughness="1 um")
+    slipping, plain = sb.solve(contact, flow_factors=Slip(20e-9)), sb.solve(contact)
+    assert (plain.central_film_thickness - slipping.central_film_thickness) / 40e-9 == pytest.approx(1, rel=0.01)
+    assert slipping.friction().total < plain.friction().total
+
+
 def refused(said, call, *given):
     """Check that a call is refused with words."""
     with pytest.raises(sb.InputError, match=said):
