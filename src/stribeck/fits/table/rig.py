@@ -488,7 +488,8 @@ def _speed_of_rotation(table: TextTable, found: dict[str, list[str]], settings: 
     if radius is None:
         raise InputError(
             f"{table.path}: {show(name)} is a rotation; the radius of its track makes it a speed: say track_radius = '20 mm' "
-            f"in [fit] of the case (to stribeck bench also --track-radius '20 mm'), or add a column 'track radius [mm]'{_without_unit(table, TRACK)}."
+            f"in [fit] of the case (to stribeck bench also --track-radius '20 mm'), or add a column 'track radius [mm]'"
+            f"{_without_unit(table, TRACK)}."
         )
     lengths, origin = radius
     pairs = zip(_numbers(table, name, "rotation", settings), lengths, strict=True)
