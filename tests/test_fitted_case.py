@@ -118,3 +118,27 @@ def test_the_roughness_of_a_surface_scales_it_as_a_whole(capsys, tmp_path):
     known = sb.load_case(case).contact
     assert found.contact.beta / known.beta == pytest.approx(found.contact.roughness / known.roughness, rel=1e-9)
     assert any("beta follows" in note for note in found.notes) and "beta" not in found.held
+
+
+def test_the_preferred_model_of_several_files_is_a_case_that_solves_as_it_was_fitted(capsys, tmp_path, subtests):
+    speeds = np.geomspace(3e-3, 0.3, 5)
+    case, out = tmp_path / "case.toml", tmp_path / "elsewhere.toml"
+    case.write_text(case_text())
+    own = sb.load_case(case).contact
+    for truth, options, said in (
+        ({"cavitation": "exit"}, ("--models", "cavitation"), "the case of exit"),
+        ({"fluid": sb.fluids.Carreau("50 us", 0.6)}, ("--models", "fluid"), "the case of carreau"),
+        ({"law": sb.contact_laws.GreenwoodTripp(), "alpha": 1.0}, (), "the case of greenwood-tripp"),
+    ):
+        with subtests.test(truth=truth):
+            friction = sb.stribeck_curve(own.replace(**truth), speed=speeds, rtol=1e-6).friction
+            for name, rows in (("a.csv", slice(3)), ("b.csv", slice(3, None))):
+                lines = "\n".join(f"{u},{mu}" for u, mu in zip(speeds[rows], friction[rows], strict=True))
+                (tmp_path / name).write_text(f"speed (m/s),friction\n{lines}\n")
+            tokens = (tmp_path / "a.csv", tmp_path / "b.csv", case, "--free", "roughness", *options)
+            answer = call(capsys, "compare", *tokens, "--out", out, "--force")
+            assert answer.code == 0 and said in answer.out, answer.err
+            back = sb.load_case(out).contact
+            solved = sb.stribeck_curve(back, speed=speeds, rtol=1e-6).friction
+            np.testing.assert_allclose(solved, friction, rtol=1e-3)
+            assert "# Fitted by stribeck" in out.read_text() and " to a, b." in out.read_text()

@@ -9,7 +9,7 @@ from typing import Any
 
 import stribeck as sb
 from stribeck.cli.arguments import Names, Quantities, Whole, check_outputs
-from stribeck.cli.data_files import read_arguments
+from stribeck.cli.data_files import ENDING, read_arguments
 from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, answer, complain, write_each
 from stribeck.cli.progress import interruptible
 from stribeck.quantities.units import InputError
@@ -178,20 +178,27 @@ def compare_command(
 
     Example: stribeck compare measured.csv case.toml --models cavitation --free boundary_friction roughness
 
-    --out writes the criteria of all laws as data: .nc, .zarr, .csv or .parquet.
+    --out writes the criteria of all laws as data (.nc, .zarr, .csv or .parquet), or the preferred one with its fitted values
+    as a case (.toml), which the other commands read.
     """
+    from stribeck.experiments.preferred_case import write_preferred_case
     from stribeck.files.datasets import write_data
 
     data, loaded = read_arguments("compare", files)
-    check_outputs(force, plot, data=[out] if out is not None else [])
+    as_case = out if out is not None and out.suffix.lower() == ENDING else None
+    check_outputs(force, plot, as_case, data=[out] if out is not None and as_case is None else [])
     with interruptible() as progress:
         found = sb.compare(data, loaded, models=models, free=free, on_step=progress.of_fit)
     actions: dict[Path | None, Callable[[], object]] = {
         plot: partial(found.plot, plot, force=force, title=loaded.title, notes=not no_notes)
     }
-    if out is not None:
+    stored: list[str] = []
+    if as_case is not None:
+        actions[as_case] = lambda: stored.append(write_preferred_case(found, loaded, as_case, force=force))
+    elif out is not None:
         actions[out] = lambda: write_data(found.to_dataset(), out, force=force)
     written, problems = write_each(actions)
-    said = filter(None, [found.candidates[0].fit.checks.first_line, str(found)])
+    of_case = [f"{out} is the case of {name}." for name in stored]
+    said = filter(None, [found.candidates[0].fit.checks.first_line, str(found), *of_case])
     answer(json, lambda: found.to_dict() | {"files": written}, lambda: said, None, None, written)
     return complain("\n".join(problems), EXIT_BAD_INPUT) if problems else 0
