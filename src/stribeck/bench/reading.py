@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
@@ -142,9 +142,9 @@ def read(
     texts = [path.name for path in paths]
     out = run_in_of(series, curve_of, labels) if settings.run_in == "leave" else []
     points, said = points_of(series, curve_of, set(out), texts)
-    found = _assembled(series, curves, labels, points, set(out))
+    for f, k in out:
+        series[f].status[series[f].passes[k].rows] = RUN_IN
     liquid = _liquid(settings)
-    viscosity = np.array([_viscosity(point, curves.inputs[point.curve], liquid) for point in points])
     notes = [
         _of_bench(f"{text}: {note}" if len(texts) > 1 else note)
         for text, one in zip(texts, series, strict=True)
@@ -155,13 +155,24 @@ def read(
         f'(run_in = "keep" in [bench] keeps it).'
         for f, k in out
     ]
-    return replace(
-        found,
+    of_points: dict[str, Any] = {
+        each.name: np.array([getattr(point, each.name) for point in points]) for each in fields(Point)
+    }
+    return BenchCurve(
         paths=tuple(map(str, paths)),
-        viscosity=viscosity,
+        curves=labels,
+        inputs=tuple(curves.inputs),
+        **of_points,
+        viscosity=np.array([_viscosity(point, curves.inputs[point.curve], liquid) for point in points]),
         notes=(*notes, *said, *_on_errors(points), *_on_viscosity(points, liquid)),
         taken=tuple(one.raw.taken for one in series),
         rolls=settings.rolls or any("slide_to_roll" in each for each in curves.inputs),
+        file=np.concatenate([np.full(len(one.status), f) for f, one in enumerate(series)]),
+        row=np.concatenate([one.raw.numbers for one in series]),
+        time=np.concatenate([one.raw.time for one in series]),
+        row_speed=np.concatenate([directions(one.raw.speed, one.raw.friction)[0] for one in series]),
+        row_friction=np.concatenate([one.friction for one in series]),
+        status=np.concatenate([one.status for one in series]),
     )
 
 
@@ -195,36 +206,6 @@ def _labels(curves: _Curves) -> tuple[str, ...]:
         texts = [f"{key.replace('_', ' ')} {format_si(inputs[key], rows[key].dimension)}" for key in differing]
         found.append(", ".join(filter(None, [name, *texts])))
     return tuple(found)
-
-
-def _assembled(
-    series: Sequence[Series], curves: _Curves, labels: tuple[str, ...], points: Sequence[Point], out: set[tuple[int, int]]
-) -> BenchCurve:
-    """Return the curve without its texts."""
-    for f, k in out:
-        series[f].status[series[f].passes[k].rows] = RUN_IN
-    order = np.concatenate([np.full(len(one.status), f) for f, one in enumerate(series)])
-    return BenchCurve(
-        paths=(),
-        curves=labels,
-        inputs=tuple(curves.inputs),
-        curve=np.array([each.curve for each in points]),
-        speed=np.array([each.speed for each in points]),
-        friction=np.array([each.friction for each in points]),
-        half_width=np.array([each.half_width for each in points]),
-        rows=np.array([each.rows for each in points]),
-        independent=np.array([each.independent for each in points]),
-        difference=np.array([each.difference for each in points]),
-        difference_error=np.array([each.difference_error for each in points]),
-        temperature=np.array([each.temperature for each in points]),
-        viscosity=np.full(len(points), np.nan),
-        file=order,
-        row=np.concatenate([one.raw.numbers for one in series]),
-        time=np.concatenate([one.raw.time for one in series]),
-        row_speed=np.concatenate([directions(one.raw.speed, one.raw.friction)[0] for one in series]),
-        row_friction=np.concatenate([one.friction for one in series]),
-        status=np.concatenate([one.status for one in series]),
-    )
 
 
 def _liquid(settings: FitSettings) -> tuple[Preset, dict[str, Any]] | None:

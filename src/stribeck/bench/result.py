@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import csv
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib.metadata import version
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from stribeck._types import Array, Indices
-from stribeck.bench.passes import LEFT_OUT
 from stribeck.files.datasets import CSV_ENDINGS, Column
 from stribeck.files.results import Exported, Labelled
 from stribeck.files.writing import PathLike, atomic_write
@@ -32,82 +31,41 @@ HEADERS = {
 }
 
 
+# What each point has beside its curve; the other numbers are of rows.
+POINTS = (
+    *("speed", "friction", "half_width", "rows", "independent", "difference", "difference_error"),
+    *("temperature", "viscosity"),
+)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class BenchCurve(Exported, Told, ByValue):
-    """Friction over speed from raw files of a rig; its dataset has points along ``point`` and rows of files along ``row``.
-
-    Attributes
-    ----------
-    paths : tuple of str
-        The files.
-    curves : tuple of str
-        Names of the curves.
-    inputs : tuple of dict
-        For each curve its inputs in SI units as far as the files say: load [N], viscosity [Pa s] and so on.
-    curve : ndarray of int, shape (n,)
-        Curve of each point.
-    speed : ndarray, shape (n,)
-        Sum of the surface speeds [m/s].
-    friction : ndarray, shape (n,)
-        Mean friction coefficient of both directions [-].
-    half_width : ndarray, shape (n,)
-        Half of its 95 % interval [-]; NaN where nothing shows the error.
-    rows : ndarray of int, shape (n,)
-        Rows of the files in each mean.
-    independent : ndarray, shape (n,)
-        Independent values among them, by their correlation.
-    difference : ndarray, shape (n,)
-        Friction in the one direction less that in the other [-]; NaN where only one was measured.
-    difference_error : ndarray, shape (n,)
-        Standard error of the difference [-].
-    temperature : ndarray, shape (n,)
-        Temperature [degC]; NaN where it is not known.
-    viscosity : ndarray, shape (n,)
-        Viscosity at that temperature [Pa s]; NaN where it is not known.
-    notes : tuple of str
-        What was left out, taken off or assumed, and by which rule, one sentence each.
-    taken : tuple of str
-        For each file what its columns were taken for.
-    rolls : bool
-        Whether both surfaces move, so that the speed is called the sum of speeds in files.
-    file : ndarray of int, shape (m,)
-        File of each row.
-    row : ndarray of int, shape (m,)
-        Row of the file, counted from 1.
-    time : ndarray, shape (m,)
-        Time of each row [s]; its number where the file has no time.
-    row_speed : ndarray, shape (m,)
-        Speed of each row with its sign [m/s].
-    row_friction : ndarray, shape (m,)
-        Friction of each row, positive along the motion [-].
-    status : ndarray of int, shape (m,)
-        What became of each row: 0 kept, 1 at rest, 2 the speed changes, 3 start of a step, 4 run-in.
-    """
+    """Friction over speed from raw files of a rig; its dataset has points along ``point`` and rows of files along ``row``."""
 
     _picture = "stribeck.plot.bench.plot_bench"
 
-    paths: tuple[str, ...]
-    curves: tuple[str, ...]
-    inputs: tuple[dict[str, float], ...]
-    curve: Indices
-    speed: Array
-    friction: Array
-    half_width: Array
-    rows: Indices
-    independent: Array
-    difference: Array
-    difference_error: Array
-    temperature: Array
-    viscosity: Array
-    notes: tuple[str, ...] = field(default=())
-    taken: tuple[str, ...] = field(default=())
-    rolls: bool = False
-    file: Indices = field(default_factory=lambda: np.array([], int))
-    row: Indices = field(default_factory=lambda: np.array([], int))
-    time: Array = field(default_factory=lambda: np.array([]))
-    row_speed: Array = field(default_factory=lambda: np.array([]))
-    row_friction: Array = field(default_factory=lambda: np.array([]))
-    status: Indices = field(default_factory=lambda: np.array([], int))
+    paths: Annotated[tuple[str, ...], "the files"]
+    curves: Annotated[tuple[str, ...], "names of the curves"]
+    inputs: Annotated[tuple[dict[str, float], ...], "inputs of each curve in SI units, as far as the files say them"]
+    curve: Annotated[Indices, "curve of each point"]
+    speed: Annotated[Array, "sum of the surface speeds", "m s-1"]
+    friction: Annotated[Array, "friction coefficient, mean of both directions", "1"]
+    half_width: Annotated[Array, "half of the 95 % interval of the friction coefficient; NaN where nothing shows it", "1"]
+    rows: Annotated[Indices, "rows of the files", "1"]
+    independent: Annotated[Array, "independent values among the rows, by their correlation", "1"]
+    difference: Annotated[Array, "friction in the one direction less that in the other; NaN where only one is known", "1"]
+    difference_error: Annotated[Array, "standard error of the difference", "1"]
+    temperature: Annotated[Array, "temperature; NaN where it is not known", "degC"]
+    viscosity: Annotated[Array, "viscosity at that temperature; NaN where it is not known", "Pa s"]
+    notes: Annotated[tuple[str, ...], "what was left out, taken off or assumed, and by which rule, one sentence each"]
+    taken: Annotated[tuple[str, ...], "for each file what its columns were taken for"]
+    rolls: Annotated[bool, "whether both surfaces move, so that files call the speed the sum of speeds"]
+    file: Annotated[Indices, "number of the file of each row", "1"]
+    row: Annotated[Indices, "row of the file, counted from 1", "1"]
+    time: Annotated[Array, "time of each row, or its number", "s"]
+    row_speed: Annotated[Array, "speed of the row, with its sign", "m s-1"]
+    row_friction: Annotated[Array, "friction coefficient of the row, positive along the motion", "1"]
+    status: Annotated[Indices, "0 kept, 1 at rest, 2 the speed changes, 3 start of a step, 4 run-in", "1"]
 
     @property
     def error(self) -> Array:
@@ -166,32 +124,20 @@ class BenchCurve(Exported, Told, ByValue):
         dict
             By the names of the attributes.
         """
-        names = ("speed", "friction", "error", "half_width", "rows", "independent", "difference", "difference_error")
-        columns = {name: getattr(self, name) for name in (*names, "temperature", "viscosity")}
+        columns = {name: getattr(self, name) for name in (*POINTS, "error")}
         of = {"files": list(self.paths), "curves": list(self.curves), "inputs": list(self.inputs)}
         return of | {"curve": [self.curves[k] for k in self.curve]} | columns | {"notes": list(self.notes)}
 
     def _labelled(self) -> Labelled:
         names = np.array(self.curves, dtype=object)
         columns: dict[str, Column] = {
-            "curve": ("point", names[self.curve], "1", "name of the curve"),
-            "speed": ("point", self.speed, "m s-1", "sum of the surface speeds"),
-            "friction": ("point", self.friction, "1", "friction coefficient, mean of both directions"),
-            "error": ("point", self.error, "1", "standard error of the friction coefficient"),
-            "half_width": ("point", self.half_width, "1", "half of the 95 % interval of the friction coefficient"),
-            "rows": ("point", self.rows, "1", "rows of the files"),
-            "independent": ("point", self.independent, "1", "independent values among the rows"),
-            "difference": ("point", self.difference, "1", "friction in the one direction less that in the other"),
-            "difference_error": ("point", self.difference_error, "1", "standard error of the difference"),
-            "temperature": ("point", self.temperature, "degC", "temperature"),
-            "viscosity": ("point", self.viscosity, "Pa s", "viscosity"),
-            "time": ("row", self.time, "s", "time, or number of the row"),
-            "row_speed": ("row", self.row_speed, "m s-1", "speed of the row, with its sign"),
-            "row_friction": ("row", self.row_friction, "1", "friction coefficient of the row, positive along the motion"),
-            "status": ("row", self.status, "1", ", ".join(f"{i} {text}" for i, text in enumerate(LEFT_OUT))),
-            "file": ("row", self.file, "1", "number of the file"),
-            "file_row": ("row", self.row, "1", "row of the file, counted from 1"),
+            name: ("point" if name in POINTS else "row", getattr(self, name), each.unit, each.meaning)
+            for name, each in self._words.items()
+            if each.unit is not None
         }
+        columns["curve"] = ("point", names[self.curve], "1", "name of the curve")
+        columns["error"] = ("point", self.error, "1", "standard error of the friction coefficient")
+        columns["file_row"] = columns.pop("row")
         about = {"title": "Stribeck curve from raw files of a rig", "files": ", ".join(self.paths)}
         return columns, {}, about | {"notes": "\n".join(self.notes)}
 

@@ -73,30 +73,14 @@ class Experiment:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Prediction(Exported, Told):
-    """What one model predicts of an experiment without a fit, and measured over predicted.
+    """What one model predicts of an experiment without a fit, and measured over predicted."""
 
-    Attributes
-    ----------
-    experiment : Experiment
-        The experiment.
-    model : str
-        Name of the model.
-    predicted : ndarray, shape (n,)
-        Friction by the model, over that of a row where the experiment compares ratios.
-    predicted_error : ndarray, shape (n,)
-        Its standard error by those of the inputs, relative.
-    measured, measured_error : ndarray, shape (n,)
-        What was measured, and its relative standard error.
-    ratio, ratio_error : ndarray, shape (n,)
-        Measured over predicted, and its relative standard error by both.
-    """
-
-    experiment: Experiment
-    model: str
-    predicted: Array
-    predicted_error: Array
-    measured: Array
-    measured_error: Array
+    experiment: Annotated[Experiment, "the experiment"]
+    model: Annotated[str, "name of the model"]
+    predicted: Annotated[Array, "friction by the model, over that of a row where the experiment compares ratios, shape (n,)"]
+    predicted_error: Annotated[Array, "its standard error by those of the inputs, relative, shape (n,)"]
+    measured: Annotated[Array, "what was measured, and its relative standard error, shape (n,)"]
+    measured_error: Annotated[Array, "what was measured, and its relative standard error, shape (n,)"]
 
     @property
     def ratio(self) -> Array:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from stribeck.asperity_friction.coulomb import Coulomb
 from stribeck.contacts.parts import KINDS
 from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.model import Prediction
+from stribeck.quantities.docstrings import Described
 
 __all__ = ["Unidentifiable", "undetermined"]
 
@@ -32,25 +34,15 @@ EXACT = 1e-6  # Singular value, over the largest, below which no measurement of 
 
 
 @dataclass(frozen=True)
-class Unidentifiable:
-    """A combination of free inputs that the data do not determine.
+class Unidentifiable(Described):
+    """A combination of free inputs that the data do not determine."""
 
-    Attributes
-    ----------
-    names : tuple of str
-        The inputs that have a part in it.
-    exponents : tuple of float
-        Powers with which they may change together, the largest being one.
-    standard_error : float
-        Standard error of the logarithm of the combination by the data alone; infinite where nothing bounds it.
-    message : str
-        Which, and why.
-    """
-
-    names: tuple[str, ...]
-    exponents: tuple[float, ...]
-    standard_error: float
-    message: str
+    names: Annotated[tuple[str, ...], "the inputs that have a part in it"]
+    exponents: Annotated[tuple[float, ...], "powers with which they may change together, the largest being one"]
+    standard_error: Annotated[
+        float, "standard error of the logarithm of the combination by the data alone; infinite where nothing bounds it"
+    ]
+    message: Annotated[str, "which, and why"]
 
 
 def undetermined(

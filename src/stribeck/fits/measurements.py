@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -39,54 +39,31 @@ UNITS = {"speed": "m s-1", "speed_viscosity": "Pa m", "hersey_number": "1", "her
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Measurements(Exported, Shown, ByValue):
-    """Measured friction in SI units, each curve in order of increasing speed; its dataset has them along ``row``.
-
-    Attributes
-    ----------
-    path : str
-        The file; empty where there is none.
-    abscissa : {"speed", "speed_viscosity", "hersey_number", "hersey_per_length"}
-        What friction was measured against: U, eta U, the Hersey number eta U/F_N of a line or eta U R/F_N of a ball, or
-        eta U/F_N of a ball; U is the sum of the surface speeds, twice their mean.
-    values : ndarray, shape (n,)
-        Its values [m/s, Pa m, 1 or 1/m].
-    friction : ndarray, shape (n,)
-        Friction coefficient [-].
-    error : ndarray, shape (n,), or None
-        Its standard error [-] where the file gives one.
-    curve : ndarray of int, shape (n,)
-        Number of the curve to which each row belongs.
-    curves : tuple of str
-        Names of the curves.
-    inputs : tuple of dict
-        For each curve, inputs of the contact in SI units in which it differs from the case.
-    rows : ndarray of int, shape (n,)
-        Row of the file in which each stands, counted from 1.
-    notes : tuple of str
-        What was left out or assumed, one sentence each.
-    taken : str
-        What each column was taken for, and how to change that.
-    run_in : tuple of int
-        Rows of the file that look like run-in.
-    files : tuple of str
-        For each curve the file that it is from, where several files were read; empty otherwise.
-    """
+    """Measured friction in SI units, each curve in order of increasing speed; its dataset has them along ``row``."""
 
     _picture = "stribeck.plot.fit.plot_measurements"
 
-    abscissa: Abscissa
-    values: Array
-    friction: Array
-    error: Array | None
-    curve: Indices
-    curves: tuple[str, ...]
-    inputs: tuple[dict[str, float], ...]
-    rows: Indices
-    path: str = ""
-    notes: tuple[str, ...] = field(default=())
-    taken: str = ""
-    run_in: tuple[int, ...] = ()
-    files: tuple[str, ...] = ()
+    abscissa: Annotated[
+        Abscissa,
+        "what friction was measured against: U, eta U, the Hersey number eta U/F_N of a line or eta U R/F_N of a "
+        "ball, or eta U/F_N of a ball; U is the sum of the surface speeds, twice their mean",
+    ]
+    values: Annotated[Array, "its values [m/s, Pa m, 1 or 1/m], shape (n,)"]
+    friction: Annotated[Array, "friction coefficient [-], shape (n,)"]
+    error: Annotated[Array | None, "its standard error [-] where the file gives one, shape (n,)"]
+    curve: Annotated[Indices, "number of the curve to which each row belongs, shape (n,)"]
+    curves: Annotated[tuple[str, ...], "names of the curves"]
+    inputs: Annotated[
+        tuple[dict[str, float], ...], "for each curve, inputs of the contact in SI units in which it differs from the case"
+    ]
+    rows: Annotated[Indices, "row of the file in which each stands, counted from 1, shape (n,)"]
+    path: Annotated[str, "the file; empty where there is none"] = ""
+    notes: Annotated[tuple[str, ...], "what was left out or assumed, one sentence each"] = field(default=())
+    taken: Annotated[str, "what each column was taken for, and how to change that"] = ""
+    run_in: Annotated[tuple[int, ...], "rows of the file that look like run-in"] = ()
+    files: Annotated[
+        tuple[str, ...], "for each curve the file that it is from, where several files were read; empty otherwise"
+    ] = ()
 
     def __len__(self) -> int:
         """Return the number of rows."""

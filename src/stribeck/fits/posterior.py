@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from stribeck._types import Array
 from stribeck.files.writing import need_extra
 from stribeck.fits.least_squares import Minimum
 from stribeck.fits.result import Fit, FittedInput, format_value
+from stribeck.quantities.docstrings import Described
 from stribeck.quantities.results import table_lines
 from stribeck.quantities.units import InputError
 
@@ -26,35 +27,17 @@ MIN_TIMES = 50  # Autocorrelation times after which emcee's documentation calls 
 
 
 @dataclass(frozen=True, eq=False)
-class Posterior:
-    """Draws of the fitted inputs.
+class Posterior(Described):
+    """Draws of the fitted inputs."""
 
-    Attributes
-    ----------
-    samples : ndarray, shape (draws, p)
-        Values of the inputs in SI units, or factors.
-    interval_68, interval_95 : tuple of tuple of float
-        Central intervals of each input.
-    acceptance : float
-        Part of the steps that were accepted.
-    autocorrelation_time : float
-        Longest integrated autocorrelation time [steps].
-    converged : bool
-        Whether the chain is longer than 50 of these times.
-    message : str
-        The same in words.
-    inputs : tuple of FittedInput
-        The inputs of the fit.
-    """
-
-    samples: Array = field(repr=False)
-    interval_68: tuple[tuple[float, float], ...]
-    interval_95: tuple[tuple[float, float], ...]
-    acceptance: float
-    autocorrelation_time: float
-    converged: bool
-    message: str
-    inputs: tuple[FittedInput, ...] = ()
+    samples: Annotated[Array, "values of the inputs in SI units, or factors, shape (draws, p)"] = field(repr=False)
+    interval_68: Annotated[tuple[tuple[float, float], ...], "central intervals of each input"]
+    interval_95: Annotated[tuple[tuple[float, float], ...], "central intervals of each input"]
+    acceptance: Annotated[float, "part of the steps that were accepted"]
+    autocorrelation_time: Annotated[float, "longest integrated autocorrelation time [steps]"]
+    converged: Annotated[bool, "whether the chain is longer than 50 of these times"]
+    message: Annotated[str, "the same in words"]
+    inputs: Annotated[tuple[FittedInput, ...], "the inputs of the fit"] = ()
 
     def __str__(self) -> str:
         """Return the intervals as a table, and how well they are known."""

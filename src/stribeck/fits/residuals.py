@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.fits.least_squares import MAD, Minimum
+from stribeck.quantities.docstrings import Described
 
 __all__ = ["Quality", "excess_of", "judge_residuals"]
 
@@ -26,31 +28,15 @@ CLIP = 3.0  # Residual, in standard deviations, at which it is cut for the tests
 
 
 @dataclass(frozen=True)
-class Quality:
-    """What the residuals say about a fit.
+class Quality(Described):
+    """What the residuals say about a fit."""
 
-    Attributes
-    ----------
-    chi_squared : float
-        Sum of squared residuals over their known errors; nan where the errors are not known.
-    degrees_of_freedom : float
-        Rows less free inputs that the data determine.
-    chi_squared_probability : float
-        Probability of a larger sum by chance; nan where the errors are not known.
-    autocorrelation : float
-        Correlation of residuals with the next along the curves [-].
-    structure_probability : float
-        Probability of residuals as ordered as these by chance.
-    messages : tuple of str
-        What a test found, one sentence each; empty where residuals look like noise.
-    """
-
-    chi_squared: float
-    degrees_of_freedom: float
-    chi_squared_probability: float
-    autocorrelation: float
-    structure_probability: float
-    messages: tuple[str, ...]
+    chi_squared: Annotated[float, "sum of squared residuals over their known errors; nan where the errors are not known"]
+    degrees_of_freedom: Annotated[float, "rows less free inputs that the data determine"]
+    chi_squared_probability: Annotated[float, "probability of a larger sum by chance; nan where the errors are not known"]
+    autocorrelation: Annotated[float, "correlation of residuals with the next along the curves [-]"]
+    structure_probability: Annotated[float, "probability of residuals as ordered as these by chance"]
+    messages: Annotated[tuple[str, ...], "what a test found, one sentence each; empty where residuals look like noise"]
 
 
 def excess_of(chi_squared: float, degrees_of_freedom: float) -> float:

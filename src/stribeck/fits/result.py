@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -45,56 +45,19 @@ class FitOutcome(Enum):
 
 @dataclass(frozen=True)
 class FittedInput(Record):
-    """One fitted input.
+    """One fitted input."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the input of the contact.
-    curve : str or None
-        The curve or file that has it for itself; None where all share it.
-    value : float
-        Fitted value in SI units, or the fitted factor.
-    unit : str
-        SI unit; empty for numbers and factors.
-    start : float
-        Where the fit began.
-    is_factor : bool
-        Whether it is a common factor on values that differ between the curves.
-    standard_error : float
-        Standard error of its logarithm, so about its relative standard error; nan at a bound.
-    interval_68, interval_95 : tuple of float
-        Ends of its intervals by profile likelihood; 0 and infinity where the data leave an end open within the bounds.
-    at_bound : bool
-        Whether it ended at one of its bounds.
-    dimension : str
-        Kind of its unit, a key of :data:`stribeck.quantities.units.DIMENSIONS`.
-    """
-
-    name: str
-    curve: str | None
-    value: float
-    unit: str
-    start: float
-    is_factor: bool
-    standard_error: float
-    interval_68: tuple[float, float]
-    interval_95: tuple[float, float]
-    at_bound: bool
-    dimension: str = "number"
-
-    _labels = {
-        "name": ("1", "input of the contact"),
-        "curve": ("1", "curve or file that has it for itself"),
-        "value": ("", "fitted value, or fitted factor"),
-        "unit": ("1", "SI unit; empty for numbers and factors"),
-        "start": ("", "where the fit began"),
-        "is_factor": ("1", "whether it is a common factor on values that differ between the curves"),
-        "standard_error": ("1", "standard error of its logarithm; nan at a bound"),
-        "at_bound": ("1", "whether it ended at one of its bounds"),
-        "interval_68": ("", "68 % interval"),
-        "interval_95": ("", "95 % interval"),
-    }
+    name: Annotated[str, "input of the contact", "1"]
+    curve: Annotated[str | None, "curve or file that has it for itself; None where all share it", "1"]
+    value: Annotated[float, "fitted value, or fitted factor", ""]
+    unit: Annotated[str, "SI unit; empty for numbers and factors", "1"]
+    start: Annotated[float, "where the fit began", ""]
+    is_factor: Annotated[bool, "whether it is a common factor on values that differ between the curves", "1"]
+    standard_error: Annotated[float, "standard error of its logarithm; nan at a bound", "1"]
+    interval_68: Annotated[tuple[float, float], "68 % interval; 0 and infinity where an end is open within the bounds", ""]
+    interval_95: Annotated[tuple[float, float], "95 % interval, likewise", ""]
+    at_bound: Annotated[bool, "whether it ended at one of its bounds", "1"]
+    dimension: Annotated[str, "kind of its unit, a key of :data:`stribeck.quantities.units.DIMENSIONS`"] = "number"
 
     @property
     def label(self) -> str:
@@ -117,76 +80,39 @@ class Fit(Exported, Told, ByValue):
 
     Its dataset has along ``row`` of the data curve, abscissa, measured and fitted friction and residual; along ``input`` what
     each :class:`FittedInput` has.
-
-    Attributes
-    ----------
-    inputs : tuple of FittedInput
-        The fitted inputs.
-    outcome : FitOutcome
-        How the fit ended.
-    contact : Contact
-        The case with the fitted values that all curves share, else with those of the first curve.
-    contacts : tuple of LineContact
-        The fitted contact of each curve.
-    data : Measurements
-        What was fitted to.
-    definition : {"balanced", "published"}
-        Definition of the viscous friction.
-    law : str
-        Name of the contact law.
-    friction : ndarray, shape (n,)
-        Fitted friction coefficient at each row, solved [-].
-    residuals : ndarray, shape (n,)
-        Fitted less measured friction over the standard error of the row [-].
-    covariance, correlation : ndarray, shape (p, p)
-        Of the logarithms of the inputs.
-    noise : float
-        Standard error of the friction coefficient found from the residuals: relative, or absolute where ``logarithmic`` is not
-        set; nan where errors were given.
-    logarithmic : bool
-        Whether residuals are of the logarithm of friction.
-    robust : bool
-        Whether outliers were kept from steering.
-    quality : Quality
-        What the residuals say.
-    undetermined : tuple of Unidentifiable
-        Combinations of inputs that the data do not determine.
-    checks : Checks
-        Whether the model applies to the contact of the highest pressure, as far as its inputs tell.
-    notes : tuple of str
-        What to know before using the values, one sentence each.
-    solver_shift : float
-        Largest change of a fitted logarithm, in standard errors, from the atlas to the solver; nan where only the solver took
-        part.
-    model_error : float
-        Largest estimated relative error of the solved friction.
-    evaluations : int
-        Predictions of all rows that were made.
     """
 
     _picture = "stribeck.plot.fit.plot_fit"
 
-    inputs: tuple[FittedInput, ...]
-    outcome: FitOutcome
-    contact: Contact
-    contacts: tuple[Contact, ...]
-    data: Measurements
-    definition: Definition
-    law: str
-    friction: Array
-    residuals: Array
-    covariance: Array = field(repr=False)
-    correlation: Array = field(repr=False)
-    noise: float
-    logarithmic: bool
-    robust: bool
-    quality: Quality
-    undetermined: tuple[Unidentifiable, ...]
-    checks: Checks
-    notes: tuple[str, ...]
-    solver_shift: float
-    model_error: float
-    evaluations: int
+    inputs: Annotated[tuple[FittedInput, ...], "the fitted inputs"]
+    outcome: Annotated[FitOutcome, "how the fit ended"]
+    contact: Annotated[Contact, "the case with the fitted values that all curves share, else with those of the first curve"]
+    contacts: Annotated[tuple[Contact, ...], "the fitted contact of each curve"]
+    data: Annotated[Measurements, "what was fitted to"]
+    definition: Annotated[Definition, "definition of the viscous friction"]
+    law: Annotated[str, "name of the contact law"]
+    friction: Annotated[Array, "fitted friction coefficient at each row, solved [-], shape (n,)"]
+    residuals: Annotated[Array, "fitted less measured friction over the standard error of the row [-], shape (n,)"]
+    covariance: Annotated[Array, "of the logarithms of the inputs, shape (p, p)"] = field(repr=False)
+    correlation: Annotated[Array, "of the logarithms of the inputs, shape (p, p)"] = field(repr=False)
+    noise: Annotated[
+        float,
+        "standard error of the friction coefficient found from the residuals: relative, or absolute where "
+        "``logarithmic`` is not set; nan where errors were given",
+    ]
+    logarithmic: Annotated[bool, "whether residuals are of the logarithm of friction"]
+    robust: Annotated[bool, "whether outliers were kept from steering"]
+    quality: Annotated[Quality, "what the residuals say"]
+    undetermined: Annotated[tuple[Unidentifiable, ...], "combinations of inputs that the data do not determine"]
+    checks: Annotated[Checks, "whether the model applies to the contact of the highest pressure, as far as its inputs tell"]
+    notes: Annotated[tuple[str, ...], "what to know before using the values, one sentence each"]
+    solver_shift: Annotated[
+        float,
+        "largest change of a fitted logarithm, in standard errors, from the atlas to the solver; nan where only the "
+        "solver took part",
+    ]
+    model_error: Annotated[float, "largest estimated relative error of the solved friction"]
+    evaluations: Annotated[int, "predictions of all rows that were made"]
     _minimum: Any = field(repr=False, compare=False)
     _threshold: float = field(repr=False)
 
