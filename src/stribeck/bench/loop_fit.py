@@ -24,7 +24,7 @@ from stribeck.fits.least_squares import Minimum, settle
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.model import Prediction
 from stribeck.fits.objective import Objective
-from stribeck.fits.result import FitOutcome, FittedInput, unit_of
+from stribeck.fits.result import FitOutcome, FittedInput, WithFittedInputs, unit_of
 from stribeck.fits.table.correlated import memory
 from stribeck.motions.motion import Motion
 from stribeck.quantities.formats import format_percent
@@ -43,7 +43,7 @@ LEVELS = (0.682689492137086, 0.95)  # Probabilities of the two intervals
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LoopFit(Exported, Told, ByValue):
+class LoopFit(WithFittedInputs, Exported, Told, ByValue):
     """Inputs of a contact fitted to a friction loop, with their intervals.
 
     Attributes
@@ -81,29 +81,6 @@ class LoopFit(Exported, Told, ByValue):
     noise: float
     correlation: float
     notes: tuple[str, ...] = ()
-
-    def __getitem__(self, name: str) -> FittedInput:
-        """Return a fitted input by its name.
-
-        Parameters
-        ----------
-        name : str
-            The name.
-
-        Returns
-        -------
-        FittedInput
-            The input.
-
-        Raises
-        ------
-        KeyError
-            If no input is called so.
-        """
-        for each in self.inputs:
-            if each.name == name:
-                return each
-        raise KeyError(f"{name}; fitted are {', '.join(each.name for each in self.inputs)}")
 
     def to_dict(self) -> dict[str, Any]:
         """Return values, intervals, rows and outcome under their names, ready for JSON.

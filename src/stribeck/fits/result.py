@@ -25,7 +25,7 @@ from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.results import ByValue, Card, Told
 from stribeck.quantities.units import DIMENSIONS
 
-__all__ = ["Fit", "FitOutcome", "FittedInput", "format_interval", "format_value"]
+__all__ = ["Fit", "FitOutcome", "FittedInput", "WithFittedInputs", "format_interval", "format_value"]
 
 
 class FitOutcome(Enum):
@@ -74,8 +74,37 @@ class FittedInput(Record):
         return format_value(self), error, format_interval(self, 0.68), format_interval(self, 0.95)
 
 
+class WithFittedInputs:
+    """A result that gives its fitted inputs by name."""
+
+    inputs: tuple[FittedInput, ...]
+
+    def __getitem__(self, name: str) -> FittedInput:
+        """Return a fitted input by its name, or by name and curve as in its label.
+
+        Parameters
+        ----------
+        name : str
+            The name.
+
+        Returns
+        -------
+        FittedInput
+            The input.
+
+        Raises
+        ------
+        KeyError
+            If no or more than one input is called so.
+        """
+        found = [each for each in self.inputs if name in (each.name, each.label)]
+        if len(found) != 1:
+            raise KeyError(f"{name}; fitted are {', '.join(each.label for each in self.inputs)}")
+        return found[0]
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Fit(Exported, Told, ByValue):
+class Fit(WithFittedInputs, Exported, Told, ByValue):
     """Inputs of a contact fitted to measured friction, with their intervals.
 
     Its dataset has along ``row`` of the data curve, abscissa, measured and fitted friction and residual; along ``input`` what
@@ -129,29 +158,6 @@ class Fit(Exported, Told, ByValue):
         known = {"viscosity": self.data.abscissa != "speed", "radius": self.contact.profile is not None}
         there = {name for name in FREE_INPUTS for contact in self.contacts if getattr(contact, name, None) is not None}
         return tuple(name for name in FREE_INPUTS if name in there and name not in fitted and not known.get(name, False))
-
-    def __getitem__(self, name: str) -> FittedInput:
-        """Return a fitted input by its name, or by name and curve as in its label.
-
-        Parameters
-        ----------
-        name : str
-            The name.
-
-        Returns
-        -------
-        FittedInput
-            The input.
-
-        Raises
-        ------
-        KeyError
-            If no or more than one input is called so.
-        """
-        found = [each for each in self.inputs if name in (each.name, each.label)]
-        if len(found) != 1:
-            raise KeyError(f"{name}; fitted are {', '.join(each.label for each in self.inputs)}")
-        return found[0]
 
     def band(self, curve: int, values: Array) -> tuple[Array, Array, Array]:
         """Return the fitted friction along a curve with its 95 % band.
