@@ -414,3 +414,122 @@ def test_the_time_of_day_is_a_time_over_midnight_too(written, subtests):
             assert found.time == pytest.approx(expected.time, rel=0, abs=1e-6)
             assert found.friction == pytest.approx(expected.friction, rel=1e-9)
             assert any("time of day" in note for note in found.notes)
+
+
+def note_of(found, words):
+    """Return whether a note has these words."""
+    return any(words in each for each in found.notes)
+
+
+@pytest.mark.quick
+def test_short_stretches_of_one_direction_are_noise_where_the_motion_turns_and_long_ones_strokes(written):
+    """``TURNING``: a stretch that is shorter than a tenth of the usual stroke is noise around rest."""
+    rows, noise = [], []
+    for k in range(12):
+        way, n = (1 if k % 2 == 0 else -1), 60 if k % 3 else 20  # some strokes are a third as long as others
+        rows += [way * 20 * np.sin(np.pi * (i + 0.5) / n) for i in range(n)]
+        noise += range(len(rows), len(rows) + 4)
+        rows += [-0.5 * way, 0.5 * way, -0.5 * way, 0.5 * way]
+    friction = curve(np.abs(rows)) * np.sign(rows)
+    found = sb.bench.read(written(text_of(np.column_stack([rows, friction]), "Speed [mm/s];COF")))
+    assert (found.status[noise] != 0).all()
+    assert (np.delete(found.status, noise) == 0).all()
+
+
+@pytest.mark.quick
+def test_surfaces_are_apart_below_a_twentieth_of_the_usual_load(written, subtests):
+    """``UNLOADED``."""
+    rows = stepped(np.random.default_rng(4), ways=(1,), zero=0.0, drift=0.0)
+    for share, apart in ((0.04, True), (0.06, False)):
+        with subtests.test(share=share):
+            lifted = rows[:40] * [1, 1, share, 0] + [0, 0, 0, 0.04]
+            found = sb.bench.read(written(text_of(np.vstack([lifted, rows + [4, 0, 0, 0]]))))
+            assert note_of(found, "40 rows without load: 40 mN") is apart
+
+
+@pytest.mark.quick
+def test_forces_are_taken_for_a_friction_coefficient_that_agrees_within_two_per_cent(written, subtests):
+    """``SAME_FRICTION``: a coefficient that is the quotient of the forces beside it has lost their sign."""
+    rows = stepped(np.random.default_rng(4), speeds=SPEEDS[::3], n=40)
+    for factor, words in ((1.01, "'Fx [N]' / 'Fz [N]'"), (0.97, "'COF' as friction")):
+        with subtests.test(factor=factor):
+            beside = np.column_stack([rows, factor * np.abs(rows[:, 3] / rows[:, 2])])
+            [taken] = sb.bench.read(written(text_of(beside, "Time [s];Speed [mm/s];Fz [N];Fx [N];COF"))).taken
+            assert words in taken
+
+
+@pytest.mark.quick
+def test_a_time_is_known_by_its_usual_names_and_goes_on_where_it_begins_anew(written, subtests):
+    rows = stepped(np.random.default_rng(4), speeds=SPEEDS[::3], n=40)[:, [0, 1, 2, 3]]
+    for name, unit in (("Zeit", "s"), ("Test time", "min"), ("Measuring time", "s"), ("Relative time", "s"), ("t", "h")):
+        with subtests.test(name=name):
+            found = sb.bench.read(written(text_of(rows, f"{name} [{unit}];Speed [mm/s];Fz [N];Fx [N]")))
+            assert found.time == pytest.approx(rows[:, 0] * {"s": 1, "min": 60, "h": 3600}[unit])
+    same = text_of(np.column_stack([np.full(len(rows), 12.0), rows]), "Time [s];Test time [s];Speed [mm/s];Fz [N];Fx [N]")
+    assert sb.bench.read(written(same)).time == pytest.approx(rows[:, 0])  # the length of a step, alike in all rows
+    of_steps = sb.bench.read(written(ball_on_disc(np.random.default_rng(11)), "ball.txt"))
+    assert np.diff(of_steps.time) == pytest.approx(np.ones(len(of_steps.time) - 1))
+
+
+@pytest.mark.quick
+def test_an_error_is_at_least_that_of_the_last_digit_and_of_a_drift(written):
+    speeds = np.repeat([1.0, 10.0], 60)
+    digits = "Time [s];Speed [mm/s];COF\n" + "\n".join(f"{i};{u};{0.6 - u / 50:.2f}" for i, u in enumerate(speeds))
+    assert sb.bench.read(written(digits)).error == pytest.approx([0.01 / np.sqrt(12)] * 2, rel=0.05)
+    speeds, place = np.repeat([1.0, 3.0, 10.0, 30.0], 120), np.arange(480.0)
+    friction = np.where(speeds == 1, 0.4 + 0.2 * place / 120, 0.3) * (1 + 1e-3 * np.random.default_rng(3).normal(size=480))
+    found = sb.bench.read(written(text_of(np.column_stack([place, speeds, friction]), "Time [s];Speed [mm/s];COF")))
+    assert note_of(found, "of the step at 1 mm/s (rows 2 to 61), as the running mean still drifted")
+    assert 0.1 / np.sqrt(12) < found.error[0] < 0.2 / np.sqrt(12)  # half of its drift is left
+    assert (found.error[1:] < 0.3 * found.error[0]).all()
+
+
+@pytest.mark.quick
+def test_the_slope_of_friction_within_a_bin_is_no_scatter(written):
+    speed = np.geomspace(1, 100, 400)
+    rows = np.column_stack([np.arange(400.0), speed, 0.5 - 0.1 * np.log10(speed)])
+    found = sb.bench.read(written(text_of(rows, "Time [s];Speed [mm/s];COF")), per_decade=3)
+    assert found.friction == pytest.approx(0.5 - 0.1 * np.log10(1e3 * found.speed), abs=1e-4)
+    assert len(found) == 6 and (found.half_width < 1e-3).all()
+
+
+@pytest.mark.quick
+def test_the_scatter_of_passes_is_the_error_where_it_is_more_than_that_within_them(written):
+    rng = np.random.default_rng(8)
+
+    def read(shifts):
+        runs = [stepped(rng, 60, speeds=[1.0, 10.0], ways=(1,), start=0, zero=0, drift=0, amplitude=0.002) for _ in shifts]
+        rows = np.vstack([run * [1, 1, 1, 1 + shift] for run, shift in zip(runs, shifts, strict=True)])
+        rows[:, 0] = 0.1 * np.arange(len(rows))
+        return sb.bench.read(written(text_of(rows)), sb.FitSettings(run_in="keep"))
+
+    wide, narrow = read([-0.1, 0.1, -0.08, 0.06, 0.0, 0.02]), read([0.0] * 6)
+    assert note_of(wide, "Passes at the same speed differ by") and not note_of(narrow, "Passes at the same speed")
+    assert (wide.half_width > 8 * narrow.half_width).all()
+
+
+@pytest.mark.quick
+def test_two_loads_tell_a_misaligned_load_from_a_zero_of_the_force(written):
+    rng = np.random.default_rng(6)
+    several = [
+        stepped(rng, 60, speeds=SPEEDS[::3], start=0, zero=0.04, drift=0, load=load, amplitude=0.002) for load in (2, 6)
+    ]
+    rows = np.vstack(several)
+    rows[:, 0] = 0.1 * np.arange(len(rows))
+    rows[:, 3] += np.tan(np.radians(1.5)) * rows[:, 2]
+    found = sb.bench.read(written(text_of(rows)))
+    [sentence] = [each for each in found.notes if each.startswith("Both directions")]
+    assert "misaligned by 1.5 ±" in sentence and "off by 39" in sentence
+    one = sb.bench.read(written(text_of(several[0])))
+    assert note_of(one, "two loads would tell") and not note_of(one, "it drifts")
+    assert found.inputs == ({"load": 2.0}, {"load": 6.0})
+    assert found.friction == pytest.approx(curve(1e3 * found.speed), rel=0.01)
+
+
+@pytest.mark.quick
+def test_a_load_of_a_cylinder_is_per_length_and_the_curve_says_so(written, tmp_path):
+    rows = stepped(np.random.default_rng(4), speeds=SPEEDS[::3], n=40)
+    found = sb.bench.read(written(text_of(rows), "line.csv"), sb.FitSettings(files={"line.csv": {"load": "30 N/m"}}))
+    assert found.inputs == ({"load": 2.0, "load_per_length": 30.0},)
+    found.to_csv(tmp_path / "curve.csv")
+    assert sb.read_measurements(tmp_path / "curve.csv").inputs == ({"load": 30.0},)

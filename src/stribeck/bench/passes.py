@@ -11,7 +11,7 @@ import numpy as np
 from stribeck._types import Array, Flags, Indices
 from stribeck.bench.raw import Raw
 from stribeck.bench.segments import Part, directions, parts_of
-from stribeck.bench.start_up import common_memory, drift_of, start_of
+from stribeck.bench.start_up import common_memory, start_of
 from stribeck.fits.table.correlated import FEWEST, FEWEST_BLOCKS, errors_of_means, memory
 from stribeck.fits.table.repeats import SAME_SPEED
 from stribeck.quantities.formats import format_percent, format_si
@@ -87,9 +87,7 @@ def passes_of(raw: Raw, per_decade: float) -> Series:
     found = [_settled(each, common[each.strokes], raw, notes) for each in found]
     for each in found:
         status[each.starting] = STARTING
-    found = _with_errors(found, raw)
-    found = [_with_drift(each, common[each.strokes], raw, notes) for each in found]
-    return Series(raw, friction, tuple(found), status, tuple(notes))
+    return Series(raw, friction, tuple(_with_errors(found, raw)), status, tuple(notes))
 
 
 def _of_steps(parts: Sequence[Part], raw: Raw, friction: Array) -> list[Pass]:
@@ -197,22 +195,6 @@ def _settled(each: Pass, common: tuple[float, float], raw: Raw, notes: list[str]
         f"running mean still drifted, {format_percent(abs(apart))} {'above' if apart > 0 else 'below'} the rest."
     )
     return replace(each, rows=kept, values=each.values[cut:], starting=gone, time=float(raw.time[kept].mean()))
-
-
-def _with_drift(each: Pass, common: tuple[float, float], raw: Raw, notes: list[str]) -> Pass:
-    """Return a pass whose error counts a drift that goes on to its end, which a sentence names."""
-    drift = drift_of(each.values, common)
-    if not drift:
-        return each
-    # A value at an unknown place of a straight line of this height, twice the difference of its halves.
-    wide = abs(2 * drift * each.mean) / math.sqrt(12)
-    if wide <= each.error:
-        return each
-    notes.append(
-        f"Friction drifts by {format_percent(2 * abs(drift))} along the step at {format_si(each.speed, 'speed')}: its error "
-        "counts that; measure longer, or look for wear, warming or the zero of the force."
-    )
-    return replace(each, error=wide)
 
 
 def _with_errors(found: Sequence[Pass], raw: Raw) -> list[Pass]:

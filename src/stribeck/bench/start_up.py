@@ -16,7 +16,7 @@ from stribeck._types import Array
 from stribeck.fits.table.correlated import FEWEST_BLOCKS, error_of_mean, memory
 from stribeck.fits.table.repeats import CLEAR
 
-__all__ = ["common_memory", "drift_of", "start_of"]
+__all__ = ["common_memory", "start_of"]
 
 ROWS_OF_A_MEAN = 5  # Rows of a mean, as MSER-5 has it
 
@@ -44,13 +44,3 @@ def start_of(series: Array, common: tuple[float, float]) -> tuple[int, float]:
     apart = float(series[:cut].mean()) - rest
     doubt = abs(rest) * math.hypot(error_of_mean(cut, *common), error_of_mean(rows - cut, *common))
     return (cut, apart / rest) if rest and abs(apart) > CLEAR * doubt else (0, 0.0)
-
-
-def drift_of(series: Array, common: tuple[float, float]) -> float:
-    """Return by how much the second half of a step lies from the first, over its mean; zero where noise may do that."""
-    half = len(series) // 2
-    if len(series) < 2 * FEWEST_BLOCKS or not series.mean():
-        return 0.0
-    apart = float(series[half:].mean() - series[:half].mean()) / float(series.mean())
-    doubt = math.sqrt(2) * error_of_mean(half, *common)
-    return apart if abs(apart) > CLEAR * doubt else 0.0
