@@ -125,13 +125,14 @@ def anchor_of(title):
     return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
 
 
-def test_the_table_of_limits_is_that_of_the_checks():
-    """``python docs/limits.py`` writes it."""
-    spec = importlib.util.spec_from_file_location("limits", ROOT / "docs" / "limits.py")
-    limits = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(limits)
-    page = TEXT[ROOT / "docs" / "checks.md"]
-    assert limits.with_table(page) == page
+@pytest.mark.parametrize(("script", "page"), [("limits", "checks"), ("commands", "cli")])
+def test_a_table_is_that_of_the_package(script, page):
+    """``python docs/limits.py`` and ``python docs/commands.py`` write them."""
+    spec = importlib.util.spec_from_file_location(script, ROOT / "docs" / f"{script}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    text = TEXT[ROOT / "docs" / f"{page}.md"]
+    assert module.with_table(text) == text
 
 
 # What people type into the search of the site, and the page that answers it.

@@ -1,0 +1,66 @@
+"""Write the table of docs/cli.md: each command with what it takes, what it does, and its options.
+
+``python docs/commands.py`` rewrites the table between the marks of the page; ``tests/test_docs.py`` compares them.
+"""
+
+import inspect
+import re
+from pathlib import Path
+
+from stribeck.cli.arguments import GroupOptions, ModelOptions
+from stribeck.cli.running import COMMANDS
+
+PAGE = Path(__file__).parent / "cli.md"
+MARKED = re.compile(r"(<!-- commands -->\n\n).*?(\n<!-- end of commands -->)", re.DOTALL)
+
+OF_ALL = {"json", "force", "verbose", "plot", "no_notes"}  # Options that the page explains once
+READ_MORE = {
+    "new": "data_sheet.md",
+    "check": "checks.md",
+    "regimes": "#what-moves-friction",
+    "figures": "figures.md",
+    "explore": "explorer.md",
+    "sweep": "sweep.md",
+    "bench": "bench.md",
+    "fit": "fitting.md",
+    "next": "fitting.md#what-to-measure-next",
+    "master": "fitting.md#one-curve-for-all-fluids-and-loads",
+    "compare": "fitting.md#which-contact-law",
+    "report": "data_sheet.md#one-page-to-hand-over",
+    "experiment": "experiments.md",
+    "stroke": "strokes.md#from-a-case-file",
+    "loop": "strokes.md#from-a-measured-loop",
+    "leak": "leakage.md",
+    "surface": "surfaces.md",
+}
+
+
+def row(name, command):
+    """Return what a command takes, with a link to its page, what its help says first, and its options."""
+    words, options = [name], []
+    for each in inspect.signature(command).parameters.values():
+        if isinstance(each.default, GroupOptions | ModelOptions):  # which stand for several options
+            options += vars(each.default)
+        elif each.kind is each.KEYWORD_ONLY:
+            options.append("no-browser" if each.name == "browser" else each.name)
+        else:
+            word = f"{each.name.upper()}{'...' * (each.kind is each.VAR_POSITIONAL or 'list' in str(each.annotation))}"
+            words.append(word if each.default is each.empty else f"[{word}]")
+    said = inspect.getdoc(command).split("\n", 1)[0].rstrip(".").replace("|", r"\|")
+    shown = f"`{' '.join(words)}`"
+    listed = ", ".join(f"`--{option.replace('_', '-')}`" for option in options if option not in OF_ALL)
+    return f"| {f'[{shown}]({READ_MORE[name]})' if name in READ_MORE else shown} | {said} | {listed} |\n"
+
+
+def with_table(text):
+    """Return the text of the page with the commands of now."""
+    head = "| `stribeck` | What it does | Options |\n| --- | --- | --- |\n"
+    table = head + "".join(row(name, command) for name, command in COMMANDS.items())
+    text, count = MARKED.subn(lambda found: found[1] + table + found[2], text)
+    if count != 1:
+        raise ValueError(f"{PAGE.name} has {count} places for the table of commands")
+    return text
+
+
+if __name__ == "__main__":
+    PAGE.write_text(with_table(PAGE.read_text()))
