@@ -538,19 +538,20 @@ def test_words_that_mean_nothing_or_half_of_it_are_refused_with_what_to_type(sub
             choices.typed(START, name, text)
 
 
-def test_what_to_change_comes_with_the_smallest_change_first(answer):
-    assert parts_of(answer)["answer"]["ways"][1][0] == ["speed", "", ""]  # which the curve tells at once
+def test_what_to_change_is_told_with_the_smallest_change_marked(answer):
+    names = ["speed", "load", "roughness", "viscosity"]
+    assert [name for (name, *_), *_ in parts_of(answer)["answer"]["ways"][1:]] == names  # the curve tells the first at once
     model = Answerer()
     model(START)
     rest(model, START)
     (_, *heads), *rows = parts_of(model(START))["answer"]["ways"]
-    assert [text for text, *_ in heads] == ["to boundary", "to hydrodynamic"]
-    found = {name: [float(factor) for *_, factor in cells if factor] for (name, *_), *cells in rows}
-    for margin in regime_margins(START.contact).margins:
+    assert [text for text, *_ in heads] == ["to boundary", "to hydrodynamic"] and [name for (name, *_), *_ in rows] == names
+    for margin, (_, *cells) in zip(regime_margins(START.contact).margins, rows, strict=True):
         marks = [mark.factor for mark in (margin.less, margin.more) if mark is not None]
-        assert sorted(found[margin.name]) == pytest.approx(sorted(marks), rel=1e-6)
-    sizes = [min(abs(math.log(factor)) for factor in each) for each in found.values()]
-    assert sizes == sorted(sizes)
+        assert sorted(float(factor) for *_, factor, _ in cells if factor) == pytest.approx(sorted(marks), rel=1e-6)
+    for column in zip(*(cells for _, *cells in rows), strict=True):
+        sizes = {abs(math.log(float(factor))): look for *_, factor, look in column if factor}
+        assert [size for size, look in sizes.items() if look == "least"] == [min(sizes)]
 
 
 def test_every_input_and_number_has_its_words_and_an_anchor_of_the_page_of_words(answer):

@@ -168,7 +168,7 @@ export default {
           </div>
           <div class="ways"><h2>What to change <span class="waits">{{ waits }}</span></h2><table>
             <tr v-for="([[name], ...cells], i) in answer.ways" :key="name" :data-key="name || null"><component :is="i ? 'th' : 'td'" :scope="i ? 'row' : null">{{ name }}</component>
-              <component :is="i ? 'td' : 'th'" v-for="([text, small, value], k) in cells" :key="k" :scope="i ? null : 'col'" :data-value="value || null">{{ text }} <small>{{ small }}</small></component></tr>
+              <component :is="i ? 'td' : 'th'" v-for="([text, small, value, look], k) in cells" :key="k" :scope="i ? null : 'col'" :class="look" :data-value="value || null">{{ text }} <small>{{ small }}</small></component></tr>
           </table></div>
         </template>
       </section>

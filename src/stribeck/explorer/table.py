@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -184,36 +184,46 @@ def comparison(answer: Answer) -> list[list[str]]:
 
 
 def change_rows(answer: Answer) -> list[list[list[str]]]:
-    """Return what each input alone would have to be for the next regimes, the smallest change first; a head, then cells.
+    """Return what each input alone would have to be for the next regimes: a head, then cells.
 
-    A cell is a text, a smaller one beside it, and the factor.  Until the margins are solved it is the speed alone.
+    A cell is a text, a smaller one beside it, the factor, and a mark where it is the smallest change that does it.
     """
-    margins, speed = answer.margins, answer.inputs.contact.speed
+    margins = answer.margins
     if not isinstance(margins, RegimeMargins) or "margins" in answer.stale:
-        marks = {} if answer.curve is None or "curve" in answer.stale or speed == 0 else answer.curve.marks
-        passed = {into: mark.value for name, mark in marks.items() if (into := ENTERED.get((answer.regime, name)))}
-        rows = {"speed": [_change(value / speed, value, "speed") for value in passed.values()]} if passed else {}
-        return _with_head(tuple(passed), rows)
-    quantities, found = INPUT_TABLES[margins.geometry].quantities, []
-    for margin in margins.margins:
-        cells, sizes = [], [math.inf]
-        for target in margins.targets:
-            mark = margin.crossing_into(target)
-            if mark is None:
-                another = margin.less is not None or margin.more is not None  # at which the search that way ended
-                cells.append(["not directly" if another else "not reachable", "", ""])
-            else:
-                cells.append(_change(mark.factor, mark.value, quantities[margin.name].dimension, _interval(mark)))
-                sizes += [abs(math.log(mark.factor))] if 0 < mark.factor < math.inf else []
-        found.append((min(sizes), margin.name, cells))
-    return _with_head(margins.targets, {name: cells for _, name, cells in sorted(found, key=lambda each: each[0])})
+        return _changes_of_speed(answer)
+    quantities, columns = INPUT_TABLES[margins.geometry].quantities, []
+    for target in margins.targets:
+        found = [(margin, margin.crossing_into(target)) for margin in margins.margins]
+        least = min((abs(math.log(mark.factor)) for _, mark in found if mark and 0 < mark.factor < math.inf), default=math.nan)
+        column = (
+            [f"to {target}", "", "", ""],
+            *(
+                _change(mark.factor, mark.value, quantities[margin.name].dimension, _interval(mark), least)
+                if mark
+                # At another regime the search that way ended.
+                else ["not reachable" if margin.less is margin.more is None else "not directly", "", "", ""]
+                for margin, mark in found
+            ),
+        )
+        columns.append(column)
+    names = ["", *(margin.name for margin in margins.margins)]
+    return [[[name, "", "", ""], *cells] for name, *cells in zip(names, *columns, strict=True)]
 
 
-def _with_head(targets: Sequence[str], rows: dict[str, list[list[str]]]) -> list[list[list[str]]]:
-    return [[[name, "", ""], *cells] for name, cells in ({"": [[f"to {each}", "", ""] for each in targets]} | rows).items()]
+def _changes_of_speed(answer: Answer) -> list[list[list[str]]]:
+    """Return the same rows by the curve, which knows the speeds alone."""
+    speed = answer.inputs.contact.speed
+    marks = {} if answer.curve is None or "curve" in answer.stale or speed == 0 else answer.curve.marks
+    passed = {into: mark.value for name, mark in marks.items() if (into := ENTERED.get((answer.regime, name)))}
+    rows = {"": [[f"to {each}", "", "", ""] for each in passed]}
+    rows["speed"] = [_change(value / speed, value, "speed") for value in passed.values()]
+    if "margins" in answer.stale:
+        rows |= dict.fromkeys(("load", "roughness", "viscosity"), [["...", "", "", ""]] * len(passed))
+    return [[[name, "", "", ""], *cells] for name, cells in rows.items()] if passed else []
 
 
-def _change(factor: float, value: float, dimension: str, interval: str = "") -> list[str]:
-    is_there = 0 < factor < math.inf
+def _change(factor: float, value: float, dimension: str, interval: str = "", least: float = math.nan) -> list[str]:
     small = f"({_plain(format_si(value, dimension))}){f' 95 %: {interval}' if interval else ''}"
-    return [_times(factor) if is_there else "", small, repr(factor) if is_there else ""]
+    if not 0 < factor < math.inf:
+        return ["", small, "", ""]
+    return [_times(factor), small, repr(factor), "least" if abs(math.log(factor)) == least else ""]
