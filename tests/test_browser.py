@@ -8,13 +8,10 @@ import json
 import os
 import re
 import shutil
-import socket
 import subprocess
 import sys
 import threading
 import time
-import urllib.error
-import urllib.request
 from pathlib import Path
 from urllib.parse import parse_qsl, urlparse
 
@@ -23,6 +20,7 @@ import pytest
 
 import stribeck as sb
 from stribeck.explorer import server
+from stribeck.explorer.downloads import KINDS, name_of
 from stribeck.explorer.inputs import inputs, url
 
 pytestmark = pytest.mark.browser
@@ -65,15 +63,28 @@ def chromium():
         browser.close()
 
 
+@pytest.fixture(scope="module")
+def context_of(chromium):
+    """Return what gives a browser with settings, which keeps what it has loaded for the next test."""
+    contexts = {}
+
+    def context(settings):
+        key = json.dumps(settings, sort_keys=True)
+        if key not in contexts:
+            contexts[key] = chromium.new_context(**({"viewport": {"width": 1440, "height": 900}} | settings))
+        return contexts[key]
+
+    return context
+
+
 @pytest.fixture
-def open_page(chromium, address):
+def open_page(context_of, address):
     """Return what opens a page; at the end no page may have failed, or asked for anything outside this machine."""
-    contexts, faults, asked = [], [], []
+    pages, faults, asked = [], [], []
 
     def go(query="", unfolded=True, **settings):
-        context = chromium.new_context(**({"viewport": {"width": 1440, "height": 900}} | settings))
-        contexts.append(context)
-        page = context.new_page()
+        page = context_of(settings).new_page()
+        pages.append(page)
         page.set_default_timeout(LONG)
         page.on("pageerror", lambda error: faults.append(str(error)))
         page.on("console", lambda message: faults.append(message.text) if message.type == "error" else None)
@@ -86,8 +97,8 @@ def open_page(chromium, address):
         return page
 
     yield go
-    for context in contexts:
-        context.close()
+    for page in pages:
+        page.close()
     assert faults == []
     hosts = {urlparse(each).hostname for each in asked if urlparse(each).scheme in ("http", "https", "ws", "wss")}
     assert hosts == {"127.0.0.1"}
@@ -118,7 +129,7 @@ def settled(page):
     """Wait until the address stays, as on a slow machine a page may rest between two moves, and return its inputs."""
     last = None
     while last != (last := page.evaluate("location.search")):
-        page.wait_for_timeout(1200)
+        page.wait_for_timeout(700)
     return contact_of(page)
 
 
@@ -157,9 +168,9 @@ def field(page, name):
     return page.locator(f"[data-row={name}] input.field")
 
 
-def test_moving_each_slider_changes_the_numbers_to_what_solve_gives(open_page):
+def test_moving_a_slider_changes_the_numbers_to_what_solve_gives(open_page):
     page = open_page()
-    for name in (*inputs.FIELDS["line"], *inputs.GROUP_FIELDS):
+    for name in ("speed", "beta", "load_group"):  # with units, without, and several inputs at once
         before = contact_of(page)
 
         def move(name=name):
@@ -224,11 +235,6 @@ def test_parts_of_the_model_are_chosen_and_refused_at_their_place(open_page):
     assert contact_of(other) == now
 
 
-def test_what_is_outside_the_model_is_said_above_the_numbers(open_page):
-    page = open_page("?modulus=100+GPa&load=100+kN/m")
-    assert page.locator(".answer .verdict.outside").inner_text().startswith("Outside the range of the model")
-
-
 def test_dragging_a_slider_follows_the_hand(open_page):
     page = open_page()
     box = slider(page, "speed").bounding_box()
@@ -284,7 +290,6 @@ def test_a_case_is_loaded_and_a_wrong_one_is_refused_in_sentences(open_page, tmp
     assert now.contact.law.parameters == case.contact.law.parameters
     assert page.locator("h1").inner_text().endswith(case.title)
     check_numbers(page, now)
-    page.wait_for_function(f"({CHART})('friction').series.some(s => s.id === 'friction')")  # solved, outside the atlas
     wrong = tmp_path / "wrong.toml"
     wrong.write_text(seal.read_text().replace("viscosity", "viscose"))
     page.set_input_files("input[type=file]", wrong)
@@ -305,28 +310,13 @@ def test_a_file_of_heights_puts_the_contact_on_that_surface(open_page):
     assert contact_of(page).contact.law is None
 
 
-def test_a_measured_curve_is_shown_over_the_model(open_page, tmp_path):
-    page = open_page()
-    path = tmp_path / "lab.csv"
-    path.write_text("speed [mm/s],friction\n1,0.6\n10,0.1\n")
-    page.set_input_files("input[type=file]", path)
-    page.wait_for_selector(".chips .q-chip")
-    page.wait_for_function(f"({CHART})('friction').series.some(s => s.name === 'lab.csv')")
-    [series] = [s for s in page.evaluate(CHART, "friction")["series"] if s["name"] == "lab.csv"]
-    assert series["data"] == [[0.001, 0.6], [0.01, 0.1]]
-    page.locator(".chips .q-chip__icon--remove").click()
-    page.wait_for_function(f"!({CHART})('friction').series.some(s => s.name === 'lab.csv')")
-
-
-def test_columns_are_mapped_and_a_fit_shows_intervals_and_residuals(open_page, tmp_path):
+def test_a_measured_curve_is_mapped_shown_fitted_and_removed(open_page, tmp_path):
     page = open_page()
     speeds = np.geomspace(1e-4, 1e-1, 9)
     friction = [sb.atlas.friction(server.example().contact.replace(speed=float(s)).groups, 0.5, 0.06) for s in speeds]
     path = tmp_path / "odd.csv"
-    rows = "\n".join(
-        f"{1e3 * s:.6g};{f * (1 + 0.02 * (-1) ** i):.6g}" for i, (s, f) in enumerate(zip(speeds, friction, strict=True))
-    )
-    path.write_text(f"A;B\n{rows}\n")
+    rows = [f"{1e3 * s:.6g};{f * (1 + 0.02 * (-1) ** i):.6g}" for i, (s, f) in enumerate(zip(speeds, friction, strict=True))]
+    path.write_text("\n".join(["A;B", *rows]))
     page.set_input_files("input[type=file]", path)
     page.wait_for_selector(".mapping")
     assert "none of which is known as speed or friction" in page.locator(".mapping").inner_text()
@@ -334,7 +324,7 @@ def test_columns_are_mapped_and_a_fit_shows_intervals_and_residuals(open_page, t
     page.get_by_label("its unit, where the header has none").fill("mm/s")
     page.get_by_label("friction", exact=True).select_option("B")
     page.get_by_role("button", name="Read").click()
-    page.wait_for_selector(".chips .q-chip")
+    page.wait_for_function(f"({CHART})('friction').series.some(s => s.name === 'odd.csv')")
     assert page.locator(".mapping").count() == 0
     page.get_by_role("button", name="Fit", exact=True).click()
     page.get_by_label("roughness", exact=True).uncheck()
@@ -345,6 +335,8 @@ def test_columns_are_mapped_and_a_fit_shows_intervals_and_residuals(open_page, t
     [points] = [each["data"] for each in page.evaluate(CHART, "residuals")["series"] if each["type"] == "points"]
     assert len(points) == 9
     page.wait_for_function("document.querySelector('.chart-residuals canvas').getBoundingClientRect().height > 60")
+    page.locator(".chips .q-chip__icon--remove").click()
+    page.wait_for_function(f"!({CHART})('friction').series.some(s => s.name === 'odd.csv')")
 
 
 def test_a_program_is_shown_to_be_copied(open_page):
@@ -354,28 +346,19 @@ def test_a_program_is_shown_to_be_copied(open_page):
     assert page.locator(".code").inner_text().startswith("import stribeck as sb")
 
 
-@pytest.mark.parametrize(
-    ("label", "ending", "begins"),
-    [
-        ("Picture of the curve (PNG)", "-curve.png", b"\x89PNG"),
-        ("Picture of the fields (SVG)", "-state.svg", b"<?xml"),
-        ("Curves (CSV)", ".csv", b"# source: stribeck "),
-        ("Gap and pressure (CSV)", "-profile.csv", b"# source: stribeck "),
-        ("Case file of this state (TOML)", ".toml", b"title = "),
-    ],
-)
-def test_what_is_shown_is_downloaded(open_page, tmp_path, label, ending, begins):
+def test_what_is_shown_is_downloaded(open_page, tmp_path):
     page = open_page()
     now = at_rest(page, lambda: (slider(page, "load_group").focus(), page.keyboard.press("ArrowRight")))
-    page.get_by_role("button", name="Save").click()
-    with page.expect_download() as download:
-        page.get_by_text(label, exact=True).click()
-    assert download.value.suggested_filename == f"pdms-cylinder-in-glycerol-water{ending}"
     path = tmp_path / "file.toml"
-    download.value.save_as(path)
-    assert path.read_bytes().startswith(begins)
-    if ending == ".toml":
-        assert sb.load_case(path).contact == now.contact
+    for label, kind in KINDS.items():
+        if kind not in ("curve.png", "csv", "toml"):  # the others come the same way
+            continue
+        page.get_by_role("button", name="Save").click()
+        with page.expect_download() as download:
+            page.get_by_text(label, exact=True).click()
+        assert download.value.suggested_filename == name_of(kind, server.example().case.title)
+        download.value.save_as(path)
+    assert sb.load_case(path).contact == now.contact  # the last one
 
 
 def test_a_shared_address_opens_as_it_was_left(open_page):
@@ -434,25 +417,22 @@ def test_two_tabs_do_not_disturb_each_other(open_page):
     check_numbers(two, second)
 
 
-def test_two_hundred_moves_in_twenty_seconds_leave_it_alive_and_right(open_page):
+def test_a_hundred_moves_in_five_seconds_leave_it_alive_and_right(open_page):
     page = open_page()
     random = np.random.default_rng(90210)
-    names = ["speed", "load", "roughness", "viscosity", "load_group"]
     place = "([name, place]) => { const s = document.querySelector(`[data-row=${name}] input.slider`);" + (
         " s.value = place; s.dispatchEvent(new Event('input', {bubbles: true})); }"
     )
-    began = time.monotonic()
-    for i in range(200):
-        name = names[i // 40]
-        at = inputs.position(server.example(), name) + 0.3 * random.uniform(-1, 1)
-        page.evaluate(place, [name, at])
-        page.wait_for_timeout(max(0.0, 100 * (i + 1) - 1000 * (time.monotonic() - began)))
-    assert time.monotonic() - began < 25
-    last = float(slider(page, "load_group").input_value())
-    page.wait_for_timeout(3000)
-    now = contact_of(page)
-    assert np.log10(now.contact.groups.load) == pytest.approx(last, abs=0.008)
-    assert np.log10(now.contact.groups.load) == pytest.approx(at, abs=0.008)
+
+    def move():
+        began = time.monotonic()
+        for i in range(100):
+            name = ["speed", "load", "roughness", "viscosity", "load_group"][i // 20]
+            page.evaluate(place, [name, inputs.position(server.example(), name) + 0.3 * random.uniform(-1, 1)])
+            page.wait_for_timeout(max(0.0, 50 * (i + 1) - 1000 * (time.monotonic() - began)))
+
+    now = at_rest(page, move)
+    assert np.log10(now.contact.groups.load) == pytest.approx(float(slider(page, "load_group").input_value()), abs=0.008)
     check_numbers(page, now)
     assert point(page)[0] == pytest.approx(now.contact.speed, rel=1e-5)
     now = at_rest(page, lambda: slider(page, "speed").press("ArrowRight"))
@@ -519,27 +499,6 @@ def test_words_of_a_data_sheet_are_typed_and_helps_open(open_page):
     opened.value.wait_for_selector("#load:target")
 
 
-def test_it_is_dark_where_the_system_is(open_page):
-    page = open_page(color_scheme="dark")
-    page.wait_for_selector("body.body--dark")
-    page.wait_for_function(f"({CHART})('friction').series.some(s => s.id === 'friction')")
-    ink = page.evaluate("getComputedStyle(document.querySelector('.chart-friction canvas')).getPropertyValue('--ink')")
-    assert ink.strip() != "#1f2328"
-
-
-def test_it_is_served_on_this_machine_only(address):
-    port = urlparse(address).port
-    request = urllib.request.Request(address, headers={"Host": "elsewhere.example"})
-    with pytest.raises(urllib.error.HTTPError, match="400"):
-        urllib.request.urlopen(request, timeout=10)
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.connect(("192.0.2.1", 9))  # sends nothing; tells our address towards the outside
-        outside = probe.getsockname()[0]
-    assert outside != "127.0.0.1"
-    with pytest.raises(OSError):
-        socket.create_connection((outside, port), timeout=3).close()
-
-
 def test_changes_are_undone_and_redone(open_page):
     page = open_page()
     first = contact_of(page)
@@ -586,7 +545,10 @@ def test_axe_core_finds_no_fault(open_page, scheme):
     from axe_playwright_python.sync_playwright import Axe
 
     page = open_page(color_scheme=scheme)
-    page.wait_for_selector(".ways tr[data-key=roughness]")
+    page.wait_for_selector(".ways tr[data-key=roughness] td[data-value]")
+    page.wait_for_function(f"({CHART})('friction').series.some(s => s.id === 'friction')")
+    ink = page.evaluate("getComputedStyle(document.querySelector('.chart-friction canvas')).getPropertyValue('--ink')")
+    assert (ink.strip() == "#1f2328") == (scheme == "light")  # it is dark where the system is
     page.locator(".chart-pressure .as-table").click()
     found = Axe().run(page, options={"resultTypes": ["violations"]}).response["violations"]
     assert [(each["id"], [node["html"][:200] for node in each["nodes"]]) for each in found] == []

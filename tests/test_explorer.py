@@ -42,6 +42,7 @@ from stribeck.plot import style
 from stribeck.quantities import units
 from stribeck.regimes.margins import regime_margins
 from stribeck.solids import Prony
+from stribeck.solver.numbers import report_rows
 
 START = server.example()
 BALL = choices.choose(START, "geometry", "point")
@@ -52,6 +53,15 @@ PROFILE = (EXAMPLES / "cylinder_profile.csv").read_bytes()
 @pytest.fixture(scope="module")
 def answer():
     return Answerer()(START)
+
+
+@pytest.fixture(scope="module")
+def rested():
+    """Return the answer of a page that has come to rest."""
+    model = Answerer()
+    model(START)
+    rest(model, START)
+    return model(START)
 
 
 def always(part):
@@ -264,14 +274,6 @@ def test_all_that_a_case_holds_goes_through_link_and_saved_case(subtests, tmp_pa
                 assert getattr(saved, name) == getattr(case, name), name
             assert saved.errors == pytest.approx(case.errors)
             assert inputs.from_case(saved).tables == shown.tables
-
-
-def test_the_friction_of_a_case_with_a_law_is_shown():
-    case = sb.load_case(EXAMPLES / "rod_seal.toml")
-    shown = inputs.from_case(case)
-    expected = sb.solve(case.contact).friction(definition=case.definition).total
-    found = {row.key: row for row in table.numbers(Answerer()(shown))}[f"friction_{case.definition}"]
-    assert abs(found.value - expected) <= 2 * found.error
 
 
 def test_what_an_address_cannot_mean_is_told(subtests):
@@ -538,13 +540,10 @@ def test_words_that_mean_nothing_or_half_of_it_are_refused_with_what_to_type(sub
             choices.typed(START, name, text)
 
 
-def test_what_to_change_is_told_with_the_smallest_change_marked(answer):
+def test_what_to_change_is_told_with_the_smallest_change_marked(answer, rested):
     names = ["speed", "load", "roughness", "viscosity"]
     assert [name for (name, *_), *_ in parts_of(answer)["answer"]["ways"][1:]] == names  # the curve tells the first at once
-    model = Answerer()
-    model(START)
-    rest(model, START)
-    (_, *heads), *rows = parts_of(model(START))["answer"]["ways"]
+    (_, *heads), *rows = parts_of(rested)["answer"]["ways"]
     assert [text for text, *_ in heads] == ["to boundary", "to hydrodynamic"] and [name for (name, *_), *_ in rows] == names
     for margin, (_, *cells) in zip(regime_margins(START.contact).margins, rows, strict=True):
         marks = [mark.factor for mark in (margin.less, margin.more) if mark is not None]
@@ -569,7 +568,7 @@ def test_every_input_and_number_has_its_words_and_an_anchor_of_the_page_of_words
 # --- whether the model applies ---
 
 
-def test_what_is_outside_the_model_stands_above_every_number():
+def test_what_is_outside_the_model_stands_above_every_number(rested):
     steel = inputs.with_text(inputs.with_text(START, "modulus", "100 GPa"), "load", "100 kN/m")
     shown = Answerer()(steel)
     expected = sb.check(steel.contact)
@@ -577,14 +576,7 @@ def test_what_is_outside_the_model_stands_above_every_number():
     main = parts_of(shown)["answer"]
     assert main["verdict"] == "outside" and main["headline"] == shown.checks.headline
     assert {each.sentence for each in expected.with_verdict("outside")} <= set(main["reasons"])
-    model = Answerer()
-    model(START)
-    rest(model, START)
-    assert parts_of(model(START))["answer"]["headline"] == sb.check(START.contact).headline
-
-
-class LeftError(Exception):
-    """The page was closed."""
+    assert parts_of(rested)["answer"]["headline"] == sb.check(START.contact).headline
 
 
 def test_slow_work_of_a_page_ends_between_its_steps():
@@ -594,9 +586,9 @@ def test_slow_work_of_a_page_ends_between_its_steps():
     def watch():
         if time.monotonic() - began > 0.3:
             ended.append(time.monotonic())
-            raise LeftError
+            raise TimeoutError
 
-    with pytest.raises(LeftError):
+    with pytest.raises(TimeoutError):
         asyncio.run(run(pool.slow, sb.propagate, ball, {"load": 0.1, "viscosity": 0.1}, watch=watch))
     pool.close()
     assert len(ended) == 1 and time.monotonic() - began < 2.3
@@ -678,29 +670,14 @@ def test_the_axis_of_speeds_holds_all_that_was_measured(answer):
 # --- addresses ---
 
 
-def test_an_address_brings_back_the_very_inputs_and_pins():
-    moved = inputs.with_slider(inputs.with_slider(START, "load_group", -1.37), "speed", -3.41)
-    moved = inputs.with_slider(moved, "roughness_group", -2.22)
-    assert f"{moved.contact.roughness / 1e-6:.6g}" != repr(moved.contact.roughness / 1e-6)  # no short number
-    moved = inputs.in_unit(moved, "radius", "cm").replace(definition="balanced", abscissa="hersey", title="a & b = ü #1")
-    pins = [START.replace(title="load 3 N/m ~ twice", definition="published"), moved.replace(title="two")]
-    opened = reopened(url.encode(moved, pins))
-    assert opened.problems == {}
-    assert opened.inputs == moved
-    assert opened.pins == tuple(pins)
-
-
 def test_an_address_says_what_is_wrong_with_it_and_takes_the_rest():
+    assert reopened("") == url.Opened(START, (), {})
     opened = reopened("load=-1+N/m&speed=2+mm/s&colour=red&solver.definition=mine&pin=speed%3Dfast&radius=1+mm")
     assert opened.inputs.contact == START.contact.replace(speed="2 mm/s", radius="1 mm")
     assert opened.problems["load"] == ("-1 N/m", "load = '-1 N/m' must be positive.")
     assert "colour = 'red' is not a known key" in opened.problems["colour"][1]
     assert "'balanced' or 'published'" in opened.problems["solver.definition"][1]
     assert "in pin, speed = 'fast'" in opened.problems["pin"][1]
-
-
-def test_an_empty_address_is_the_start():
-    assert reopened("") == url.Opened(START, (), {})
 
 
 # --- answers ---
@@ -735,41 +712,15 @@ def test_the_scale_of_a_films_map_begins_at_the_minimum_film():
     assert film["low"] == math.log10(least) <= min(film["data"]) + 1e-3 and film["high"] >= max(film["data"]) - 1e-3
 
 
-def test_the_numbers_are_those_of_solve_within_their_errors(subtests):
-    for name in ["speed", "load_group"]:
-        with subtests.test(name=name):
-            model = Answerer()
-            model(START)
-            moved = inputs.with_slider(START, name, inputs.position(START, name) + 0.3)
-            rows = {row.key: row for row in table.numbers(model(moved))}
-            solution = sb.solve(moved.contact)
-            expected = {
-                "friction_published": solution.friction(definition="published").total,
-                "friction_balanced": solution.friction(definition="balanced").total,
-                "fluid_load_share": solution.fluid_load_share,
-                "contact_load_share": solution.contact_load_share,
-                "central_film_thickness": solution.central_gap * moved.contact.hertz.indentation,
-                "minimum_film_thickness": solution.minimum_gap * moved.contact.hertz.indentation,
-                "lambda_ratio": solution.lambda_ratio,
-                "hersey_number": solution.hersey_number,
-            }
-            for key, value in expected.items():
-                assert abs(rows[key].value - value) <= 2 * rows[key].error, key
-            assert rows["hersey_number"].error == 0
-
-
-def test_where_a_film_ends_and_begins_anew_stands_among_the_numbers(subtests):
-    for cavitation, ends in [("none", []), ("exit", ["exit"]), ("reform", ["exit", "reformation"])]:
-        with subtests.test(cavitation=cavitation, ends=ends):
-            shown = choices.choose(START.replace(speed="100 mm/s"), "cavitation", cavitation)
-            shown = choices.with_detail(shown, "cavitation", "cavity_pressure", "-10 kPa") if cavitation == "reform" else shown
-            rows = {row.key: row for row in table.numbers(Answerer()(shown))}
-            assert [key for key in rows if "position" in key] == [f"film_{end}_position" for end in ends]
-            solution = sb.solve(shown.contact)
-            for end in ends:
-                row, place = rows[f"film_{end}_position"], getattr(solution, f"{end}_position")
-                assert abs(row.value - place * shown.contact.hertz.half_width) <= 2 * row.error
-                assert row.text.endswith("m") and 0 < row.error < 1e-4 * abs(row.value)
+def test_the_numbers_are_those_of_solve_within_their_errors():
+    model = Answerer()
+    model(START)
+    moved = inputs.with_slider(START, "load_group", inputs.position(START, "load_group") + 0.3)
+    rows = {row.key: row for row in table.numbers(model(moved))}
+    expected = {number.name: number.value for number in report_rows(sb.solve(moved.contact))}
+    for key in ("friction_published", "friction_balanced", "fluid_load_share", "central_film_thickness", "lambda_ratio"):
+        assert abs(rows[key].value - expected[key]) <= 2 * rows[key].error, key
+    assert rows["hersey_number"].value == expected["hersey_number"] and rows["hersey_number"].error == 0
 
 
 def test_the_curve_and_its_transitions_are_those_of_the_solver(answer):
@@ -1051,37 +1002,18 @@ def test_over_the_hersey_number_measured_points_stand_at_their_own(subtests):
     for contact in [START.contact, BALL.contact]:
         with subtests.test(contact=contact):
             text = "curve;speed [m/s];viscosity [mPa*s];friction\na;0.01;50;0.6\nb;0.02;10;0.5\n"
-            first, second = read_measured("two.csv", text.encode(), contact)
             later = contact.replace(viscosity=0.2)  # what the file does not say follows the page
-            for found, viscosity in ((first, 0.05), (second, 0.01)):
-                own = later.replace(speed=float(found.speed[0]), viscosity=viscosity)
-                assert found.places(later, "hersey") * curves.hersey_scale(later) == pytest.approx(
-                    own.hersey_number, rel=1e-12
-                )
+            for found, viscosity in zip(read_measured("two.csv", text.encode(), contact), (0.05, 0.01), strict=True):
+                own = later.replace(speed=float(found.speed[0]), viscosity=viscosity).hersey_number
+                assert found.places(later, "hersey") * curves.hersey_scale(later) == pytest.approx(own, rel=1e-12)
                 assert found.places(later, "speed") == found.speed
             [found] = read_measured("h.csv", b"Hersey number [-],friction\n1e-5,0.5\n", contact)
             assert found.places(later, "hersey") * curves.hersey_scale(later) == pytest.approx(1e-5, rel=1e-12)
-            assert contact.replace(speed=float(found.speed[0])).hersey_number == pytest.approx(1e-5, rel=1e-12)
 
 
-def test_each_curve_of_a_file_is_read_for_itself():
-    text = "curve,speed [m/s],friction\na,0.1,0.3\nb,0.1,0.4\na,0.2,0.2\n"
-    first, second = read_measured("m.csv", text.encode(), START.contact)
-    assert (first.name, second.name) == ("m.csv: a", "m.csv: b")
-    assert first.speed.tolist() == [0.1, 0.2] and second.friction.tolist() == [0.4]
-
-
-def test_a_measured_curve_that_cannot_be_used_is_refused_in_a_sentence(subtests):
-    for content, sentence in [
-        (b"", "m.csv"),
-        (b"speed,force\n1,2\n", "'force'"),
-        (b"speed [m/s],friction\n1,0.5\n2,-1\n", "row 3, column 'friction'"),
-        (b"speed [kg],friction\n1,2\n", "[kg]"),
-    ]:
-        with subtests.test(content=content, sentence=sentence):
-            with pytest.raises(sb.InputError) as problem:
-                read_measured("m.csv", content, START.contact)
-            assert str(problem.value).startswith("m.csv") and sentence in str(problem.value)
+def test_a_measured_curve_that_cannot_be_used_is_refused_under_the_name_of_its_file():
+    with pytest.raises(sb.InputError, match=r"^m.csv.*row 3, column 'friction'"):
+        read_measured("m.csv", b"speed [m/s],friction\n1,0.5\n2,-1\n", START.contact)
 
 
 # --- server ---
@@ -1172,23 +1104,6 @@ def test_rows_of_a_map_have_the_transitions_of_their_own(monkeypatch):
     between = contact.replace(roughness=float(found.roughness[12]), speed=float(found.lines[0, 12]))
     assert sb.solve(between).fluid_load_share == pytest.approx(0.05, rel=0.15)
     assert found.lines[0, -1] > 1.0 and np.isfinite(found.lines[0]).all()  # beyond the axis too, up to a decade
-
-
-def test_between_solved_rows_a_map_bends_with_its_lines(monkeypatch):
-    def line(roughness):
-        logs = np.log(roughness / 1e-6)
-        return 1e-3 * np.exp(1.5 * logs + 0.05 * logs**2)
-
-    def row(contact, *_):
-        return (float(line(contact.roughness)), math.inf, math.nan if contact.roughness > 1e-5 else 0.2)
-
-    monkeypatch.setattr(curves, "_row", row)
-    *_, found = curves.solved_diagram(START.contact, "balanced", (1e-7, 1.0), -7, lambda _: None)
-    boundary, hydrodynamic, minimum = found.lines
-    np.testing.assert_allclose(boundary, line(found.roughness), rtol=0.02)  # straight lines miss them by 0.037
-    assert np.isinf(hydrodynamic).all()
-    there = np.isfinite(minimum)
-    assert there[found.roughness < 3.2e-6].all() and not there[found.roughness > 3.2e-6].any()
 
 
 def test_a_file_of_heights_becomes_the_surface_of_the_contact():
