@@ -58,7 +58,7 @@ class Known:
         scale[:, 1] = np.maximum(scale[:, 1], 1e-3)
         return scale
 
-    def checked_error(self, left, right, parts, values):
+    def checked_error(self, left, right):
         return np.zeros(3)
 
     negligible = 0.0
@@ -141,7 +141,7 @@ def test_a_path_that_halves_without_end_ends(monkeypatch):
     monkeypatch.setattr("stribeck.numerics.continuation.MAX_LOG_STEP", 0.2)
 
     class Doubted(Known):
-        def checked_error(self, left, right, parts, values):
+        def checked_error(self, left, right):
             return np.full(3, 100.0 * (right.coordinate - left.coordinate))
 
     problem = Doubted()
@@ -225,7 +225,7 @@ def test_an_interrupted_path_keeps_what_was_reported():
 
 def test_an_interval_says_what_its_problem_finds_wrong_in_the_middle():
     class Doubted(Known):
-        def checked_error(self, left, right, parts, values):
+        def checked_error(self, left, right):
             return np.array([0.0, 0.0, 1e-5])
 
     problem = Doubted()

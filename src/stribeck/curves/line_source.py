@@ -34,7 +34,6 @@ from stribeck.solver.solve_error import SolveError, describe
 __all__ = ["COLUMNS", "CurvePoint", "LineSource", "PathSource"]
 
 MAX_STATE_RTOL = 1e-6  # Largest rtol of a landmark's state unless another is asked for: landmarks are a curve's headline
-MESH_LOG_DISTANCE = 0.5  # Distance of ln(value) up to which the mesh of one landmark's state is tried at another
 FIELD_LOG_STEP = 1e-3  # Step of ln(value) in differences of what follows from fields between states
 INTERVAL_FRACTIONS = 0.5 - 0.5 * np.cos(np.pi * np.arange(9) / 9)  # Places of an interval between which events are looked for
 
@@ -134,9 +133,9 @@ class CurvePoint(Solution):
 
 
 @one_blas_thread
-def _solved_at(path: Any, s: float, rtol: float | None = None, near: RefinedState | None = None) -> RefinedState:
-    """Return the verified state at a coordinate of a path; the mesh of ``near``, a state solved close by, is tried first."""
-    found: RefinedState = path.problem.point_at(path, s, rtol, near)
+def _solved_at(path: Any, s: float, rtol: float | None = None) -> RefinedState:
+    """Return the verified state at a coordinate of a path."""
+    found: RefinedState = path.problem.point_at(path, s, rtol)
     return found
 
 
@@ -302,10 +301,8 @@ class LineSource(PathSource):
         return self._states[s, self.rtol] if known is None else known
 
     def solved(self, s: float, rtol: float) -> Solution:
-        """Return the solution at a place; the mesh of the nearest one solved before is tried first."""
-        near = min(self._states, key=lambda each: abs(each[0] - s), default=(np.inf, rtol))
-        close = self._states[near] if abs(near[0] - s) <= MESH_LOG_DISTANCE else None
-        point = self._states[s, rtol] = _solved_at(self.path, s, rtol, close)
+        """Return the solution at a place."""
+        point = self._states[s, rtol] = _solved_at(self.path, s, rtol)
         if point.state is None or point.values is None:
             raise SolveError(point.outcome, None, f"{describe(self.coordinate.groups_at(s))}: {point.outcome.value}")
         found = solution_of(point, self.coordinate.contact_at(s), rtol)

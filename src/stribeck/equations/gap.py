@@ -68,11 +68,11 @@ def minimum_gap(mesh: Mesh, h: Array) -> tuple[float, float]:
     return float(position[0]), float(gap[0])
 
 
-def minimum_gaps(mesh: Mesh, log_gap: Array, first: int = 0) -> tuple[Array, Array, Array, Indices]:
-    """Return the minimum gap of many states, the logarithms of their gaps in rows."""
+def minimum_gaps(mesh: Mesh, log_gap: Array) -> tuple[Array, Array, Array, Indices]:
+    """Return place, value, error and panel of the minimum gap of many states, the logarithms on panels in x in rows."""
     order, rule, count = mesh.order, reference(mesh.order), len(log_gap)
     panels, powers = log_gap.shape[1] // order, np.arange(order)
-    shape = log_gap - np.log(mesh.far[first * order : (first + panels) * order])
+    shape = log_gap - np.log(mesh.far[:-order])
     k, about = np.divmod(np.argmin(log_gap, axis=1), order)
     start = rule.nodes[about]
     beside = np.clip(k - (about == 0) + (about == order - 1), 0, panels - 1)
@@ -83,7 +83,7 @@ def minimum_gaps(mesh: Mesh, log_gap: Array, first: int = 0) -> tuple[Array, Arr
     own = shape.reshape(count, panels, order)[np.arange(len(k)) % count, k]
     polynomial = np.einsum("rnj,rj->rn", _taylor(order)[about], own)
     slopes, bends = polynomial[:, 1:] * powers[1:], polynomial[:, 2:] * powers[2:] * powers[1:-1]
-    c, d, s, origin = mesh.centres[first + k], mesh.half_widths[first + k], start, rule.nodes[about]
+    c, d, s, origin = mesh.centres[k], mesh.half_widths[k], start, rule.nodes[about]
     low, high = _brackets(order)[:, about]
     for _ in range(MAX_STEPS):
         basis, x = _powers(s - origin, order), c + d * s
@@ -97,7 +97,7 @@ def minimum_gaps(mesh: Mesh, log_gap: Array, first: int = 0) -> tuple[Array, Arr
     value = np.einsum("rn,rn->r", _powers(s - origin, order), polynomial) + np.log(mesh.scale**2 + x * x)
     rows = np.arange(count)
     rows += np.where(value[-count:] < value[:count], len(k) - count, 0)
-    return x[rows], np.exp(value[rows]), 2 * interpolation_error(own[rows]), first + k[rows]
+    return x[rows], np.exp(value[rows]), 2 * interpolation_error(own[rows]), k[rows]
 
 
 @lru_cache(maxsize=32)

@@ -62,10 +62,6 @@ class Path(ABC):
     def intervals_to_halve(self, rtol: float, is_whole: bool) -> Sequence[int]:
         """Return the numbers of the intervals to be halved, of a path that is whole or still grows."""
 
-    def on_branch(self, upwards: bool) -> Self:
-        """Return the path as far as its states lie on one branch of solutions, by default the whole."""
-        return self
-
     @cached_property
     def coordinates(self) -> Array:
         """Where the solved states are."""
@@ -138,11 +134,7 @@ def follow(
             if isinstance(new, Outcome):
                 outcome = new
                 break
-            longer = _halve_intervals(path.with_state(new), rtol, False, upwards, refused)
-            path = longer.on_branch(upwards)
-            if path is not longer:
-                outcome = Outcome.PATH_LOST
-                break
+            path = _halve_intervals(path.with_state(new), rtol, False, upwards, refused)
             if on_interval is not None:
                 on_interval(*sorted((here.coordinate, new.coordinate)))
             here = new

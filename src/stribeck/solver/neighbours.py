@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import fields, is_dataclass, replace
 from functools import partial
 from typing import Any, NamedTuple, Protocol
@@ -16,25 +15,20 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import log_cut_offs
 from stribeck.contacts.groups import Groups
-from stribeck.equations.observables import ROW
 from stribeck.equations.point.observables import FrictionWithin, observables
-from stribeck.equations.prediction import extrapolate
-from stribeck.equations.real_area import area_of_state
-from stribeck.equations.sensitivity import Change, log_derivatives
+from stribeck.equations.sensitivity import Change
 from stribeck.numerics.continuation import steady_weights
 from stribeck.numerics.settings import HALF_DIGITS, MAX_AMPLIFICATION, MAX_STATES, SLOPE_RESIDUAL
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outputs import AREA, GROUPS
-from stribeck.solver.path.corrector import Corrector, solve_cold_line
+from stribeck.solver.path.line_steps import LineSteps
 from stribeck.solver.point.estimate import Pair
 from stribeck.solver.point.level import predicted
 from stribeck.solver.point.sensitivity import derivatives_along, state_derivatives
 from stribeck.solver.point.solution import finish_point
 from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import PointState, with_area
-from stribeck.solver.refinement import RefinedState
-from stribeck.solver.solve import finish, hertz_solution, stated_errors
-from stribeck.solver.solve_error import SolveError
+from stribeck.solver.solve import hertz_solution
 
 __all__ = ["Neighbours", "Observed"]
 
@@ -58,7 +52,7 @@ class Neighbours:
 
     def __init__(self, rtol: float, most: int = MAX_STATES) -> None:
         self.rtol = rtol
-        self._steps: dict[str, _Steps] = {"line": _CylinderSteps(rtol), "point": _BallSteps(rtol)}
+        self._steps: dict[str, _Steps] = {"line": LineSteps(rtol), "point": _BallSteps(rtol)}
         self._known: deque[_Known] = deque(maxlen=most)
         self._last: tuple[_Known, Any] | None = None
 
@@ -99,7 +93,7 @@ class Neighbours:
         inputs: Mapping[str, float],
     ) -> Observed:
         """Return observables of a moving contact with derivatives; ``inputs`` say where the liquid of a ball ends."""
-        return self._steps[groups.geometry].observed(self.solved(groups), names, changes, by, inputs)
+        return Observed(*self._steps[groups.geometry].observed(self.solved(groups), names, changes, by, inputs))
 
     @one_blas_thread
     def solution(self, groups: Groups, contact: Contact | None = None) -> Any:
@@ -189,57 +183,11 @@ class _Steps(Protocol):
 
     def observed(
         self, state: Any, names: Sequence[str], changes: Sequence[Change], by: Sequence[str], inputs: Mapping[str, float]
-    ) -> Observed:
+    ) -> tuple[Array, Array, Array]:
         """Return observables with their derivatives and errors."""
 
     def finish(self, state: Any, groups: Groups, contact: Contact | None) -> Any:
         """Return a state as a solution, or raise the error of its outcome."""
-
-
-class _CylinderSteps:
-    """Cylinders, on meshes that they share while these resolve them."""
-
-    order = 4
-
-    def __init__(self, rtol: float) -> None:
-        self.rtol, self.corrector = rtol, Corrector(rtol)
-
-    def start(self, groups: Groups) -> RefinedState:
-        """Return a state from cold."""
-        state = self.corrector.cold(groups)
-        return state if state is not None and state.outcome.ok else solve_cold_line(groups, self.rtol)
-
-    def follow(self, line: Line, groups: Groups) -> RefinedState:
-        """Return a state from those along a line, from cold where that fails."""
-        with suppress(SolveError, FloatingPointError, np.linalg.LinAlgError):
-            self.corrector.move_to(line[-1][1])
-            # Of films that may re-form, with a cavity or without.
-            ending = line[-1][1].state.groups.model.cavitation
-            alike = [(s, each.state) for s, each in line if each.state.groups.model.cavitation is ending]
-            found = self.corrector.solve(extrapolate(alike, 0.0), groups)
-            if found.outcome.ok:
-                return found
-        return self.start(groups)
-
-    def kept(self, state: RefinedState) -> RefinedState:
-        """Return the state, whose operators the corrector may drop."""
-        return state
-
-    def observed(
-        self, state: Any, names: Sequence[str], changes: Sequence[Change], by: Sequence[str], inputs: Mapping[str, float]
-    ) -> Observed:
-        """Return observables with their derivatives and errors, those by all groups at once."""
-        assert state.state is not None and state.values is not None
-        known = dict(zip(ROW, zip(state.values.array(), stated_errors(state, self.rtol), strict=False), strict=False))
-        if AREA in names:
-            known[AREA] = area_of_state(state.state, float(known["contact_load_share"][1]))
-        values, errors = np.array([known[name] for name in names]).T
-        derivatives = log_derivatives(state.state, changes)
-        return Observed(values, np.stack([derivatives[name] for name in names]), errors)
-
-    def finish(self, state: RefinedState, groups: Groups, contact: Contact | None) -> Any:
-        """Return a state as a solution, or raise the error of its outcome."""
-        return finish(state, groups, contact, self.rtol)
 
 
 class _BallSteps:
@@ -267,7 +215,7 @@ class _BallSteps:
 
     def observed(
         self, state: Any, names: Sequence[str], changes: Sequence[Change], by: Sequence[str], inputs: Mapping[str, float]
-    ) -> Observed:
+    ) -> tuple[Array, Array, Array]:
         """Return observables with their derivatives and errors; a fluid that thins far out counts up to the liquid's edge."""
         groups = state.groups
         if groups.roughness == 0:  # what touches nowhere has neither
@@ -292,7 +240,7 @@ class _BallSteps:
                 wrong = errors[row] * abs(values[row]) + abs(beyond)
                 values[row] += beyond
                 errors[row] = wrong / (abs(values[row]) or state.scales[name])
-        return Observed(values, slopes, errors)
+        return values, slopes, errors
 
     def finish(self, state: PointState, groups: Groups, contact: Contact | None) -> Any:
         """Return a state as a solution, or raise the error of its outcome."""

@@ -56,11 +56,9 @@ def converge(
     tolerances: tuple[float, float] | None = None,
     profile_tolerance: float = math.inf,
     spread: float = 0.0,
-    own_inverse: bool = False,
 ) -> RefinedState:
     """Return a guess refined until its error is at most ``rtol``, rounding stops it, or the mesh grows too large."""
-    # ``profile_tolerance`` is the tail of the gap between the nodes, which no observable needs.  With ``own_inverse`` the
-    # state holds the inverse of its own Jacobian, whose step squares the error that the one before leaves.
+    # ``profile_tolerance`` is the tail of the gap between the nodes, which no observable needs.
     base, _ = with_positive_gap(groups)
     law = contact_law(base)
     tail, gap_tail = mesh_tolerances_for(rtol) if tolerances is None else tolerances
@@ -69,7 +67,7 @@ def converge(
     last: tuple[int, Array] | None = None
     halvings = 0
     outcome = Outcome.REFINEMENT_LIMIT
-    newton = newton_tolerance(rtol, own_inverse)
+    newton = newton_tolerance(rtol)
     for _ in range(MAX_REFINEMENTS):
         try:
             mesh = mesh_for(guess, base, law, order_for(rtol), tail, gap_tail, profile_tolerance, halvings, spread)
@@ -87,7 +85,6 @@ def converge(
             continue
         if isinstance(guess, State):  # the prediction becomes the first state on the way to this one
             state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
-        state = state.corrected() if own_inverse else state
         fine, values = FineOperators(mesh), values_of(state, groups)
         estimate = error_estimate(state, values, fine)
         # Where a film ends, the rate falls to zero in a fluid without a plateau, or roughness stops the flow, two meshes may
@@ -143,11 +140,9 @@ def outcome_for(estimate: ErrorEstimate, rtol: float) -> Outcome:
     return Outcome.CONVERGED if estimate.total <= rtol else Outcome.REFINEMENT_LIMIT
 
 
-def newton_tolerance(rtol: float, own_inverse: bool = False) -> float:
+def newton_tolerance(rtol: float) -> float:
     """Return the size of the last Newton step that leaves an error far below ``rtol``."""
-    # With ``own_inverse`` another step follows with the inverse at the state, which squares the error.
-    last = max(1e-11, 1e-2 * rtol)
-    return math.sqrt(last) if own_inverse else last
+    return max(1e-11, 1e-2 * rtol)
 
 
 def values_of(state: State, groups: Groups) -> Observables:

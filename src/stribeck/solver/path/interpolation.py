@@ -28,20 +28,13 @@ class LinePoint(NamedTuple):
 
 def minimum_between(left: Expansion, right: Expansion, of: LinePoint, parts: Array) -> tuple[Array, Array]:
     """Return minimum gap and position between two expansions on the mesh of one, and the error of the gap."""
-    # The search covers the surroundings of both ends' positions, then the whole mesh if the gap is not lowest there.
     order, mesh, ends = min(left.order, right.order), of.state.mesh, (left, right)
-    weights = hermite_weights(order, parts)
-    scaled, everywhere = _scaled(left, right, order), range(mesh.panels - 1)
-    places = [end.point.state.minimum_position for end in ends]
-    low, high = np.searchsorted(mesh.edges, [min(places), max(places)])
-    for panels in (range(max(0, int(low) - 2), min(everywhere.stop, int(high) + 1)), everywhere):
-        a, b = (_gaps_on(end.point, each, of, panels) for end, each in zip(ends, scaled, strict=True))
-        with np.errstate(over="ignore"):  # a gap beyond all numbers is no minimum: its interval is halved
-            place, lowest, error, panel = minimum_gaps(mesh, weights[0] @ a + weights[1] @ b, panels.start)
-        if panels == everywhere or (panel.min() > panels.start and panel.max() < panels.stop - 1):
-            break
+    weights, scaled = hermite_weights(order, parts), _scaled(left, right, order)
+    a, b = (_gaps_on(end.point, each, of)[:, : -mesh.order] for end, each in zip(ends, scaled, strict=True))
+    with np.errstate(over="ignore"):  # a gap beyond all numbers is no minimum: its interval is halved
+        place, lowest, error, panel = minimum_gaps(mesh, weights[0] @ a + weights[1] @ b)
     on_panels = missed_by(order, np.vstack([a, b]), change_ratio(left, right)).reshape(-1, mesh.order).max(axis=1)
-    error = error + on_panels[panel - panels.start] * (parts * (1 - parts)) ** order
+    error = error + on_panels[panel] * (parts * (1 - parts)) ** order
     for end, each, w in zip(ends, scaled, weights, strict=True):
         if end.point.state.mesh is not mesh:  # values from another mesh were interpolated
             error = error + 2 * _unresolved(end.point, each, w, place)
@@ -84,19 +77,17 @@ def _on_mesh(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
     at, there = point.state.equations.layout, of.state.equations.layout
     found = np.empty((len(coefficients), there.size))
     found[:, there.numbers] = coefficients[:, at.numbers]
-    found[:, there.gap] = _gaps_on(point, coefficients, of, range(other.panels))
+    found[:, there.gap] = _gaps_on(point, coefficients, of)
     if there.pressure.stop > there.pressure.start:
         found[:, there.pressure] = mesh.interpolate(coefficients[:, at.pressure], other.nodes)
     return found
 
 
-def _gaps_on(point: LinePoint, coefficients: Array, of: LinePoint, panels: range) -> Array:
-    """Return the coefficients of the log gap on neighbouring panels of another point's mesh."""
-    mesh, other, at = point.state.mesh, of.state.mesh, point.state.equations.layout
-    own = slice(panels.start * other.order, panels.stop * other.order)
-    if mesh is other:
-        return np.asarray(coefficients[:, at.gap][:, own])
-    nodes = other.nodes[own]
+def _gaps_on(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
+    """Return the coefficients of the log gap on another point's mesh."""
+    mesh, nodes, at = point.state.mesh, of.state.mesh.nodes, point.state.equations.layout
+    if mesh is of.state.mesh:
+        return coefficients[:, at.gap]
     shapes = coefficients[:, at.gap].copy()
     shapes[0] -= np.log(mesh.far)
     found = mesh.interpolate(shapes, nodes)

@@ -88,9 +88,7 @@ class LineKnots(LineStates):
         assert state is not None
         return state
 
-    def point_at(
-        self, path: HermitePath, s: float, rtol: float | None = None, near: RefinedState | None = None
-    ) -> RefinedState:
+    def point_at(self, path: HermitePath, s: float, rtol: float | None = None) -> RefinedState:
         """Return the verified state at a coordinate of a path; without ``rtol`` the tolerance is that of the path."""
         groups, tolerance = self.groups_at(s), self.tolerance if rtol is None else rtol
         if tolerance >= self.tolerance:

@@ -12,26 +12,25 @@ from stribeck.contact_laws.continued import misfit
 from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import Model
-from stribeck.equations.error_estimate import FineOperators
 from stribeck.equations.line import Equations
 from stribeck.equations.observables import ROW
-from stribeck.equations.state import State, solve_state
+from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.rheology.viscosity import Barus, Constant, DowsonHigginson, Incompressible, Roelands
-from stribeck.numerics.newton import Inverse, Root
+from stribeck.numerics.newton import Root
 from stribeck.numerics.series import beyond, radius
 from stribeck.numerics.settings import COEFFICIENT_NOISE, MAX_DEGREE, NEGLIGIBLE, SAFETY
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import NAMES
 from stribeck.solver.at_rest import shift_along, with_positive_gap
-from stribeck.solver.path.corrector import Corrector
 from stribeck.solver.path.expansion import Direction, Expanded, expand, from_logs
-from stribeck.solver.path.interpolation import LinePoint, between, minimum_between, on
+from stribeck.solver.path.interpolation import LinePoint, between, minimum_between
 from stribeck.solver.path.line_knots import LineKnots
 from stribeck.solver.path.line_states import POSITION, LineStates, numbers_of
+from stribeck.solver.path.line_steps import LineSteps
 from stribeck.solver.path.path import Expansion, SolvedPath
-from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_for, newton_tolerance, verify
+from stribeck.solver.refinement import RefinedState
 
 __all__ = ["LineProblem", "line_problem"]
 
@@ -60,7 +59,8 @@ class LineProblem(LineStates):
     def __init__(self, groups_at: Callable[[float], Groups], direction: Direction, rtol: float) -> None:
         super().__init__(groups_at, rtol)
         self.direction = direction
-        self.corrector = Corrector(self.rtol, own_inverse=True)
+        self.steps = LineSteps(self.rtol)
+        self._sharper: dict[float, LineSteps] = {}  # Of states between those of the path, by their tolerance
 
     @property
     def negligible(self) -> float:
@@ -81,7 +81,6 @@ class LineProblem(LineStates):
     def _solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
         """Return the expanded state at ``s`` from all neighbours, or the outcome of the failure."""
         groups = self.groups_at(s)
-        refined: RefinedState | None
         if near:
             guess, doubt = self._guess(s, groups, near)
             if not doubt < 1:
@@ -90,31 +89,31 @@ class LineProblem(LineStates):
             if not (np.isfinite(gap).all() and gap.min() > 0):
                 return Outcome.NOT_FINITE
             spread = max(abs(guess.minimum_position - one.point.state.minimum_position) for one in near)
-            refined = self.corrector.solve(guess, groups, spread)
+            refined = self.steps.solve(guess, groups, spread)
         else:
-            refined = self.corrector.cold(groups)
+            refined = self.steps.start(groups)
         return self._expanded(s, refined)
 
     def begin(self, s: float, refined: RefinedState) -> Expansion | Outcome:
         """Return the expansion of a state that is known already, with a full film, or the outcome of the failure."""
-        self.corrector.move_to(refined)
+        self.steps.move_to(refined)
         groups = self.groups_at(s)
         if refined.state is not None:  # series need the groups of the path to the last digit, and the state's own Jacobian
             state = replace(refined.state.without_inverse(), groups=with_positive_gap(groups)[0])
             refined = replace(refined, groups=groups, state=state)
         return self._expanded(s, refined)
 
-    def _expanded(self, s: float, found: RefinedState | None) -> Expansion | Outcome:
+    def _expanded(self, s: float, found: RefinedState) -> Expansion | Outcome:
         """Return the expansion of a state whose error is within the tolerance, else its outcome."""
         refined = self.accepted(found)
         if isinstance(refined, Outcome):
             return refined
         state = refined.state
         assert state is not None and refined.fine is not None
-        if state.root.inverse is None:
-            state = state.corrected()
+        state = state.corrected()
         y, inverse, state = state.y, state.root.inverse, state.without_inverse()
         assert inverse is not None
+        self.steps.inverse = inverse  # that of the next state, too
         with np.errstate(all="ignore"):  # values that are not finite are cut off below
             direction, shifts = shift_along(self.groups_at(s), state.groups, self.direction, MAX_DEGREE)
             of_state = expand(state.equations, y, inverse, state.groups, direction, shifts, MAX_DEGREE)
@@ -164,37 +163,13 @@ class LineProblem(LineStates):
                 return found
         return self._guess(s, self.groups_at(s), ends)[0]
 
-    def point_at(
-        self, path: SolvedPath, s: float, rtol: float | None = None, near: RefinedState | None = None
-    ) -> RefinedState:
-        """Return the verified state at a coordinate, on a neighbour's mesh where that holds the tolerance."""
+    def point_at(self, path: SolvedPath, s: float, rtol: float | None = None) -> RefinedState:
+        """Return the verified state at a coordinate; without ``rtol`` the tolerance is that of the path."""
         rtol = self.tolerance if rtol is None else rtol
-        groups = self.groups_at(s)
-        if near is not None and near.state is not None and near.groups.model == groups.model:
-            point = self._verified(near.state, with_positive_gap(groups)[0], groups, near.fine, rtol, near.state.root.inverse)
-            if point is not None:
-                return point
-        guess = self.guess_at(path, s)
-        end = on(guess.mesh, path.around(s))
-        if end is not None and end.refined.estimate is not None and end.refined.estimate.total <= rtol:
-            point = self._verified(guess, guess.groups, groups, end.fine, rtol)
-            if point is not None:
-                return point
-        return converge(guess, groups, rtol, mesh_tolerances_for(rtol))
-
-    def _verified(
-        self,
-        guess: State,
-        base: Groups,
-        groups: Groups,
-        fine: FineOperators | None,
-        rtol: float,
-        kept: Inverse | None = None,
-    ) -> RefinedState | None:
-        """Return the state of ``base`` on the mesh of a guess; None if its error exceeds the tolerance."""
-        state = solve_state(base, guess.equations.operators, guess, newton_tolerance(rtol), kept=kept)
-        point = verify(state, groups, fine, rtol) if state.outcome.ok and fine is not None else None
-        return point if point is not None and point.outcome.ok else None
+        steps, known = self._sharper.setdefault(rtol, LineSteps(rtol)), path.nearest(s).state
+        if known.estimate.total <= rtol:
+            steps.move_to(known)
+        return steps.solve(self.guess_at(path, s), self.groups_at(s))
 
     def state(self, groups: Groups, of: LinePoint, w: Array) -> State:
         """Return the state with unknowns ``w``, which hold logarithms of gaps, on the mesh of a point."""
@@ -202,18 +177,14 @@ class LineProblem(LineStates):
         y = from_logs(of.state.equations, w)
         scale = float(y[of.state.equations.layout.flux_gap.start]) ** 2
         equations = Equations(operators, float(groups.speed), contact_law(groups), scale)
-        return State(groups, equations, y, Root(y, Outcome.CONVERGED, 0, 0, 0.0, 0.0, None, None), 0.0)
+        return State(groups, equations, y, Root(y, Outcome.CONVERGED, 0, 0, 0.0, None, None), 0.0)
 
-    def checked_error(self, left: Expansion, right: Expansion, parts: Array, values: Callable[[], Array]) -> Array:
-        """Return how far the series of both ends are apart where these lie on two meshes."""
+    def checked_error(self, left: Expansion, right: Expansion) -> Array:
+        """Return half the difference of both ends' series in the middle, less what truncation explains, on two meshes."""
         if left.point.state.mesh is right.point.state.mesh:
             return np.zeros(POSITION + 1)
-        return NEGLIGIBLE * self.tolerance + self.mesh_disagreement(left, right)
-
-    def mesh_disagreement(self, left: Expansion, right: Expansion) -> Array:
-        """Return half the difference of both ends' series in the middle, less what truncation explains."""
         if not self.moves:
-            return np.zeros(POSITION + 1)
+            return np.full(POSITION + 1, NEGLIGIBLE * self.tolerance)
         order = min(left.order, right.order)
         steps = (0.5 * (right.coordinate - left.coordinate) * np.array([1.0, -1.0])[:, None]) ** np.arange(order + 1)
         terms = np.stack([left.series[: order + 1], right.series[: order + 1]]) * steps[:, :, None]
@@ -223,7 +194,7 @@ class LineProblem(LineStates):
         scales = self.scales(values.mean(axis=0)[None], np.array([0.5 * (left.coordinate + right.coordinate)]))[0]
         found = 0.5 * np.maximum(np.nan_to_num(apart), 0.0) / scales
         found[READ_COLUMNS] = found[ROW["central_gap"]], 0.0  # the minimum has no series
-        return np.asarray(found)
+        return NEGLIGIBLE * self.tolerance + np.asarray(found)
 
     def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
         """Return the minimum gap and its position, on the mesh of the two that resolves each better."""

@@ -55,10 +55,8 @@ class LineStates:
         found[found == 0] = 1.0
         return found
 
-    def accepted(self, refined: RefinedState | None) -> RefinedState | Outcome:
+    def accepted(self, refined: RefinedState) -> RefinedState | Outcome:
         """Return a state whose error is within the tolerance, else its outcome."""
-        if refined is None:
-            return Outcome.PATH_LOST
         if refined.state is None or refined.estimate is None or not refined.estimate.total <= self.tolerance:
             self.failure = refined
             return refined.outcome

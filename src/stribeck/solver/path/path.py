@@ -11,7 +11,7 @@ Only a :class:`Problem` knows what the states are.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -20,7 +20,7 @@ import numpy as np
 from stribeck._types import Array, Flags, Indices
 from stribeck.numerics.continuation import Path, PathProblem
 from stribeck.numerics.dual import Dual, value_of
-from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite_form, inner_places, missed_by
+from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite_form, missed_by
 from stribeck.numerics.settings import (
     MAX_DEGREE,
     NEGLIGIBLE,
@@ -82,15 +82,15 @@ class Problem(PathProblem, Protocol):
     def scales(self, values: Array, s: Array) -> Array:
         """Return the scales of the errors of observables at coordinates s, shape (len(s), n)."""
 
+    def checked_error(self, left: Expansion, right: Expansion) -> Array:
+        """Return the scaled error between two expansions that neither of them shows, zero where they surely agree."""
+
     @property
     def negligible(self) -> float:
         """Error in units of the scales that a polynomial for observables without a series may add to theirs."""
 
     def read_scales(self, values: Array) -> Array:
         """Return the scales of observables without a series."""
-
-    def checked_error(self, left: Expansion, right: Expansion, parts: Array, values: Callable[[], Array]) -> Array:
-        """Return the largest scaled difference of ``values()`` from the equations, zero where series are surely right."""
 
     def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
         """Return values, errors and columns of observables without a series at parts of an interval."""
@@ -139,23 +139,10 @@ class Interval:
         scales = self.problem.scales(values, np.array([self.left.coordinate, self.right.coordinate]))
         return np.stack([relative.max(axis=0), (relative * scales).max(axis=0)])
 
-    @property
-    def _alone(self) -> _Pieces:
-        return _Pieces([self])  # not kept: a cycle would keep all operators until the garbage is collected
-
     @cached_property
     def checked_error(self) -> Array:
-        """Largest difference of the interpolant from the equations within the interval."""
-
-        def values() -> Array:
-            where = np.zeros(len(places), dtype=int)
-            found: Array
-            found, _, basis = self._alone.smooth(where, places)
-            self._alone.read(found, where, places, basis)
-            return found
-
-        places = inner_places()
-        return self.problem.checked_error(self.left, self.right, places, values)
+        """Error that neither end shows."""
+        return self.problem.checked_error(self.left, self.right)
 
     @cached_property
     def read(self) -> tuple[Array, Array, Sequence[int], bool]:
@@ -198,18 +185,10 @@ class Interval:
         # Of rounding, or of a film that ruptures, a shorter interval has no less.
         return not self.largest_error > self.before / STEP_GROWTH
 
-    @cached_property
-    def joins_two_branches(self) -> bool:
-        """Whether the interpolant leaves the range of both ends, which then lie on two branches."""
-        ends = np.stack([self.left.series[0], self.right.series[0]])
-        scales = self.problem.scales(ends, np.array([self.left.coordinate, self.right.coordinate])).max(axis=0)
-        values, errors = self.values_at_checks
-        far = np.maximum(values - ends.max(axis=0), ends.min(axis=0) - values) > scales
-        return bool((far & (errors > 1))[:, self.problem.controlled].any())
-
     def at(self, parts: Array) -> tuple[Array, Array]:
         """Return the observables at parts of the interval, and their errors in units of the scales, shape (len(parts), n)."""
-        return self._alone.at(np.zeros(len(parts), dtype=int), parts)
+        # Not kept: a cycle would keep all operators until the garbage is collected.
+        return _Pieces([self]).at(np.zeros(len(parts), dtype=int), parts)
 
 
 class _Pieces:
@@ -329,15 +308,6 @@ class SolvedPath(Path):
     def intervals_to_halve(self, rtol: float, is_whole: bool) -> list[int]:
         """Return the numbers of the intervals that do not interpolate within the tolerance, and of which half might."""
         return [k for k, one in enumerate(self.intervals) if one.length > 0 and one.is_poor(rtol)]
-
-    def on_branch(self, upwards: bool) -> SolvedPath:
-        """Return the path as far as no interval joins two branches, from where it began."""
-        lost = [k for k, one in enumerate(self.intervals) if one.length > 0 and one.joins_two_branches]
-        if not lost:
-            return self
-        kept = self.intervals[: lost[0]] if upwards else self.intervals[lost[-1] + 1 :]
-        begin = self.expansions[0 if upwards else -1]
-        return replace(self, intervals=kept or (Interval(self.problem, begin, begin),))
 
     @cached_property
     def _pieces(self) -> _Pieces:

@@ -1,49 +1,75 @@
-"""Correcting a prediction: on the mesh of the previous state while it resolves, else on a refined one."""
+"""States of the line one from another: on the mesh of the previous state while it resolves, else on a refined one."""
 
 from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.equations.error_estimate import FineOperators, gap_is_resolved
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
+from stribeck.equations.observables import ROW
+from stribeck.equations.prediction import extrapolate
+from stribeck.equations.real_area import area_of_state
+from stribeck.equations.sensitivity import Change, log_derivatives
 from stribeck.equations.state import State, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import Inverse
 from stribeck.numerics.settings import MAX_BYTES, NEGLIGIBLE, SHARE, STEP_GROWTH
+from stribeck.quantities.outputs import AREA
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.cold_start import first_path
 from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_for, newton_tolerance, verify
+from stribeck.solver.solution import Solution
+from stribeck.solver.solve import finish, solved_point, stated_errors
+from stribeck.solver.solve_error import SolveError
+
+__all__ = ["LineSteps"]
 
 
-class Corrector:
-    """Solves states one from another, on one mesh while that resolves them."""
+class LineSteps:
+    """Solves states of the line one from another, on one mesh while that resolves them."""
 
-    # The operators of the mesh cost as much as several states.  The inverse of a neighbour's Jacobian, with which the
-    # iteration ends, may misjudge a defect by half: with ``own_inverse`` states are verified with their own.
+    # The operators of the mesh cost as much as several states.
 
-    def __init__(self, rtol: float, own_inverse: bool = False) -> None:
+    order = 4  # Degree of the polynomial that predicts a state from those along a line
+
+    def __init__(self, rtol: float) -> None:
         self.rtol = rtol
-        self.own_inverse = own_inverse
         self.operators: Operators | None = None
         self.fine: FineOperators | None = None
         self.inverse: Inverse | None = None
         self.left: deque[tuple[Operators, FineOperators | None]] = deque()
-        self.tolerances = self._widest
+        self.tolerances = mesh_tolerances_for(rtol)
 
-    def cold(self, groups: Groups) -> RefinedState | None:
-        """Return the state of ``groups`` from cold; None if no path leads there."""
-        if _cavity_may_vanish(groups):
-            return self._kept(solve_cold_line(groups, self.rtol))
-        path = first_path(with_positive_gap(groups)[0])
-        if not path.outcome.ok:
-            return None
-        return self._adopt(
-            converge(path.states[-1], groups, self.rtol, self.tolerances, spread=NEGLIGIBLE, own_inverse=self.own_inverse)
-        )
+    def start(self, groups: Groups) -> RefinedState:
+        """Return a state from cold."""
+        path = None if _cavity_may_vanish(groups) else first_path(with_positive_gap(groups)[0])
+        if path is not None and path.outcome.ok:
+            found = self._adopt(converge(path.states[-1], groups, self.rtol, self.tolerances, spread=NEGLIGIBLE))
+            if found.outcome.ok:
+                return found
+        return self._kept(solve_cold_line(groups, self.rtol))
+
+    def follow(self, line: Sequence[tuple[float, RefinedState]], groups: Groups) -> RefinedState:
+        """Return a state from those along a line, the nearest last, from cold where that fails."""
+        with suppress(SolveError, FloatingPointError, np.linalg.LinAlgError):
+            self.move_to(line[-1][1])
+            known = [(s, each.state) for s, each in line if each.state is not None]
+            # Of films that may re-form, with a cavity or without.
+            ending = known[-1][1].groups.model.cavitation
+            found = self.solve(extrapolate([each for each in known if each[1].groups.model.cavitation is ending], 0.0), groups)
+            if found.outcome.ok:
+                return found
+        return self.start(groups)
 
     def solve(self, guess: Guess, groups: Groups, spread: float = 0.0) -> RefinedState:
         """Return the state of ``groups`` from a guess; ``spread`` as for :func:`stribeck.equations.mesh_choice.mesh_for`."""
@@ -56,6 +82,31 @@ class Corrector:
             if point.outcome.ok and keeps_cavity(point, groups):
                 return replace(point, groups=groups)
         return self._kept(solve_cold_line(groups, self.rtol))
+
+    def kept(self, state: RefinedState) -> RefinedState:
+        """Return the state, whose operators may be dropped."""
+        return state
+
+    def observed(
+        self,
+        state: RefinedState,
+        names: Sequence[str],
+        changes: Sequence[Change],
+        by: Sequence[str],
+        inputs: Mapping[str, float],
+    ) -> tuple[Array, Array, Array]:
+        """Return observables with their derivatives and errors, those by all groups at once."""
+        assert state.state is not None and state.values is not None
+        known = dict(zip(ROW, zip(state.values.array(), stated_errors(state, self.rtol), strict=False), strict=False))
+        if AREA in names:
+            known[AREA] = area_of_state(state.state, float(known["contact_load_share"][1]))
+        values, errors = np.array([known[name] for name in names]).T
+        derivatives = log_derivatives(state.state, changes)
+        return values, np.stack([derivatives[name] for name in names]), errors
+
+    def finish(self, state: RefinedState, groups: Groups, contact: Contact | None) -> Solution:
+        """Return a state as a solution, or raise the error of its outcome."""
+        return finish(state, groups, contact, self.rtol)
 
     def move_to(self, point: RefinedState) -> None:
         """Take the mesh of a state that was solved before."""
@@ -71,22 +122,14 @@ class Corrector:
         if self.operators is not None and self.fine is not None:
             if base.model != self.operators.model:
                 self.operators, self.inverse = Operators(self.operators.mesh, base.model), None
-            state = solve_state(
-                base,
-                self.operators,
-                guess,
-                newton_tolerance(self.rtol, self.own_inverse),
-                kept=self.inverse,
-            )
+            state = solve_state(base, self.operators, guess, newton_tolerance(self.rtol), kept=self.inverse)
             if state.outcome.ok:
                 if self._is_resolved(state, spread):
-                    own = state.corrected() if self.own_inverse else state
-                    point = verify(own, groups, self.fine, self.rtol)
+                    point = verify(state, groups, self.fine, self.rtol)
                     if point.outcome.ok:
-                        kept = self._kept(point)
-                        return point if self.own_inverse else kept
+                        return self._kept(point)
                 guess = state
-        return self._adopt(converge(guess, groups, self.rtol, self.tolerances, spread=spread, own_inverse=self.own_inverse))
+        return self._adopt(converge(guess, groups, self.rtol, self.tolerances, spread=spread))
 
     def _is_resolved(self, state: State, spread: float) -> bool:
         centre = -state.exit / state.cavity_stretch
@@ -101,15 +144,9 @@ class Corrector:
         self.inverse = point.state.root.inverse if same_mesh else None
         return replace(point, state=point.state.without_inverse())
 
-    @property
-    def _widest(self) -> tuple[float, float]:
-        """Mesh tolerances of a first mesh; that of a path resolves the minimum of neighbouring gaps too."""
-        tail, gap_tail = mesh_tolerances_for(self.rtol)
-        return tail, NEGLIGIBLE * gap_tail if self.own_inverse else gap_tail
-
     def _relax(self) -> None:
         """Widen the mesh tolerances by a factor, up to those of a first mesh."""
-        tail, gap_tail = self._widest
+        tail, gap_tail = mesh_tolerances_for(self.rtol)
         self.tolerances = min(tail, STEP_GROWTH * self.tolerances[0]), min(gap_tail, STEP_GROWTH * self.tolerances[1])
 
     def _change_to(self, operators: Operators, fine: FineOperators | None) -> None:
@@ -119,7 +156,7 @@ class Corrector:
             self.left.append((self.operators, self.fine))
         while sum(each.mesh.nodes.nbytes * each.mesh.size for each, _ in self.left) > MAX_BYTES:
             for operators_left in filter(None, self.left.popleft()):
-                for name in ("deflection", "_of_highest"):
+                for name in ("deflection", "of_highest"):
                     vars(operators_left).pop(name, None)
         self.operators, self.fine = operators, fine
 
@@ -128,8 +165,7 @@ class Corrector:
             self._change_to(point.state.equations.operators, point.fine)
             self.tolerances = point.tolerances or self.tolerances
             self._relax()
-        kept = self._kept(point)
-        return point if self.own_inverse else kept
+        return self._kept(point)
 
 
 def _cavity_may_vanish(groups: Groups) -> bool:
@@ -147,9 +183,6 @@ def keeps_cavity(point: RefinedState, groups: Groups) -> bool:
 
 def solve_cold_line(groups: Groups, rtol: float) -> RefinedState:
     """Return the state from cold, with the outcome of the failure if there was one."""
-    from stribeck.solver.solve import solved_point
-    from stribeck.solver.solve_error import SolveError
-
     try:
         return solved_point(groups, rtol)
     except SolveError as failure:
