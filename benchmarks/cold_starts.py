@@ -6,9 +6,8 @@ Usage::
 
 Groups are drawn evenly in the logarithm from speed 1e-12 to 1e6, load 1e-8 to 10, relative roughness 1e-6 to
 1e3; one in twelve has speed zero, one in twelve roughness zero. The true error is that against a mesh with six
-more nodes on each panel and panels that reach 32 times as far. The last table starts with the flux condition
-written in other ways. Runs for about two minutes; prints the tables that docs/numerics_tables.md
-shows.
+more nodes on each panel and panels that reach 32 times as far. Runs for about two minutes; prints the table that
+docs/numerics_tables.md shows.
 """
 
 from __future__ import annotations
@@ -16,8 +15,6 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack
-from unittest.mock import patch
 
 import numpy as np
 
@@ -28,11 +25,6 @@ from stribeck.equations.observables import DRAG_ROWS, ROW, drag_scales, observab
 from stribeck.fluids.newtonian import flux_gap
 from stribeck.numerics.newton import StepControl, root_find
 from stribeck.numerics.panels import Mesh
-from stribeck.numerics.running_integral import RunningIntegral
-from stribeck.solver.cold_start import cold_start
-
-SIDES = {"both infinities": False, "the left infinity": True}
-SCALES = {"constant": False, "`h*`**2 of the iterate": True}
 
 
 def draw(number: int, seed: int) -> list[sb.Groups]:
@@ -78,7 +70,7 @@ def true_error(s: sb.results.Solution) -> float:
 
 
 def coverage(states: list[sb.Groups], rtol: float) -> str:
-    """Return the row of the first table for one tolerance."""
+    """Return the row for one tolerance."""
     ratios, times, nodes, outcomes, balance = [], [], [], [], 0.0
     for groups in states:
         start = time.perf_counter()
@@ -97,52 +89,9 @@ def coverage(states: list[sb.Groups], rtol: float) -> str:
     )
 
 
-def variant(states: list[sb.Groups], one_sided: bool, moving_scale: bool) -> tuple[int, int, int, int]:
-    """Return lost paths, points and factorisations of cold starts on changed equations."""
-    integral, after = RunningIntegral.__call__, RunningIntegral.after
-    residual, jacobian = Equations.residual, Equations.jacobian
-
-    def integral_from_left(running: RunningIntegral, values: np.ndarray) -> np.ndarray:
-        mesh = running.mesh
-        return integral(running, values) + np.where(mesh.nodes > 0, mesh.weights @ values, 0.0)
-
-    def after_integral_from_left(running: RunningIntegral, operator: np.ndarray) -> np.ndarray:
-        mesh = running.mesh
-        return after(running, operator) + np.outer(operator[:, mesh.nodes > 0].sum(axis=1), mesh.weights)
-
-    def scaled_residual(equations: Equations, y: np.ndarray) -> np.ndarray:
-        r = residual(equations, y)
-        r[-1] *= y[-1] ** 2 / equations.flux_scale
-        return r
-
-    def scaled_jacobian(equations: Equations, y: np.ndarray, units: np.ndarray | None = None) -> np.ndarray:
-        matrix = jacobian(equations, y, units)
-        matrix[-1] *= y[-1] ** 2 / equations.flux_scale
-        weights = equations.operators.mesh.weights
-        unit = 1.0 if units is None else units[-1]
-        matrix[-1, -1] += 2 * y[-1] * (weights @ ((y[:-2] - y[-1]) / y[:-2] ** 3)) * unit
-        return matrix
-
-    left = {"__call__": integral_from_left, "after": after_integral_from_left}
-    scaled = {"residual": scaled_residual, "jacobian": scaled_jacobian}
-    with ExitStack() as stack:
-        if one_sided:
-            stack.enter_context(patch.multiple(RunningIntegral, **left))
-        if moving_scale:
-            stack.enter_context(patch.multiple(Equations, **scaled))
-        paths = [cold_start(groups) for groups in states]
-    return (
-        sum(not path.outcome.ok for path in paths),
-        sum(len(path.states) for path in paths),
-        sum(s.root.factorisations for path in paths for s in path.states),
-    )
-
-
 def document(number: int, seed: int) -> Iterator[str]:
-    """Yield the tables."""
+    """Yield the rows of the table."""
     states = draw(number, seed)
-    yield f"{number} random cold starts, seed {seed}:"
-    yield ""
     yield (
         "| rtol | converged | bounded by rounding | failed | error covered | largest error/estimate "
         "| load balance | nodes, median | most | ms, median | most |"
@@ -150,17 +99,10 @@ def document(number: int, seed: int) -> Iterator[str]:
     yield "|---|---|---|---|---|---|---|---|---|---|---|"
     for rtol in (1e-4, 1e-6, 1e-9):
         yield coverage(states, rtol)
-    yield ""
-    yield "| pressure from | scale of the flux condition | lost | points | factorisations |"
-    yield "|---|---|---|---|---|"
-    moving = [groups for groups in states if groups.speed > 0 and groups.roughness > 0]
-    for side, one_sided in SIDES.items():
-        for scale, moving_scale in SCALES.items():
-            yield (f"| {side} | {scale} | " + " | ".join(map(str, variant(moving, one_sided, moving_scale))) + " |")
 
 
 def main() -> None:
-    """Print the tables."""
+    """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--number", type=int, default=200)
     parser.add_argument("--seed", type=int, default=20261121)

@@ -1,7 +1,5 @@
 """Instructions of three cases, counted by valgrind: they repeat where times do not.
 
-Prints the table that docs/numerics_tables.md shows.
-
 Usage::
 
     python benchmarks/instructions.py [--points 101]

@@ -135,6 +135,20 @@ mathjax_path = "mathjax/tex-chtml-full.js"
 MATHJAX = Path(importlib.util.find_spec("sphinx-mathjax-offline").origin).parent / "static" / "mathjax"
 
 
+GALLERY = (
+    "stribeck_curve one_state regimes_of_a_contact what_moves_the_minimum levers_of_a_seal seal_from_pressure "
+    "friction_over_a_stroke surface_to_contact_law fit_measured_friction fit_a_ball transition_of_a_ball "
+    "what_the_fluid_changes film_that_ends fluid_that_thins oil_that_stiffens flow_between_asperities rubber_on_a_base "
+    "rubber_that_remembers both_surfaces_move two_laws_at_heavy_load formula_against_solver force_balance"
+).split()
+"""The examples in the order of the gallery; others come last."""
+
+
+def in_order(folder):
+    """Return the key by which the gallery sorts the files of its folder."""
+    return lambda name: GALLERY.index(Path(name).stem) if Path(name).stem in GALLERY else len(GALLERY)
+
+
 def keep_pictures(block, block_vars, gallery_conf):
     """Move the pictures that an example has written beside itself into the gallery."""
     kept = []
@@ -156,6 +170,7 @@ sphinx_gallery_conf = {
     "filename_pattern": r"\.py$",
     "copyfile_regex": r".*\.(toml|csv)$",
     "image_scrapers": (keep_pictures,),
+    "within_subsection_order": in_order,
     "reset_modules": (name_file,),
     "abort_on_example_error": True,
     "download_all_examples": False,

@@ -1,9 +1,9 @@
 """
-Both surfaces move
-==================
+Does rolling change the friction?
+=================================
 
-At the same sum of the surface speeds the film of a Newtonian fluid is the same, whatever the sliding: asperities carry the
-same load, and the friction in the film falls with the sliding speed down to that of rolling.  Laws: docs/fluids.md; the
+At the same sum of the surface speeds the film of a Newtonian fluid does not depend on sliding. Asperities carry the same
+load; the friction in the film falls with the sliding speed, down to that of rolling.  Laws: docs/fluids.md; the
 plain model: theory.md.  Runs in a second.
 """
 

@@ -1,10 +1,10 @@
 """
-The film ends behind the contact
-================================
+What changes if the film ends behind the contact?
+=================================================
 
-With air at the outlet a film does not bear suction: it ends where pressure and pressure gradient vanish.  The same rough
-contact (load group 0.1, relative roughness 0.001) with and without such an exit: friction has a lower minimum, the film is
-thicker.  Laws: docs/fluids.md; the plain model: theory.md.  Runs in a second.
+With air at the outlet a film does not bear suction: it ends where pressure and pressure gradient vanish.  Compared with a
+full film, this rough contact (load group 0.1, relative roughness 0.001) has a lower friction minimum and a thicker film.
+Laws: docs/fluids.md; the plain model: theory.md.  Runs in a second.
 """
 
 import numpy as np

@@ -1,5 +1,5 @@
-"""Roughness and boundary friction of a ball from measured friction
-====================================================================
+"""Fit a ball: roughness and boundary friction
+===========================================
 
 Friction of a rubber ball on a disc at two loads, made up with 3 % of noise, is fitted jointly: boundary friction and roughness
 come back with their intervals.  Equations: theory.md, section 11; docs/fitting.md.  Runs in about a minute.

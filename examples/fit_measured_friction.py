@@ -1,5 +1,5 @@
-"""Inputs of a contact from measured friction
-==========================================
+"""Fit a cylinder: boundary friction, roughness and modulus
+========================================================
 
 Two fluids, one contact: friction coefficient, roughness and modulus with their intervals.  The data are synthetic, solved with
 the model of theory.md and 4 % of noise, so that the answer is known; docs/fitting.md.  Runs in ten seconds.

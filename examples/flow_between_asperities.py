@@ -1,9 +1,9 @@
 """
-Roughness hinders the flow
-==========================
+Does roughness hinder the flow?
+===============================
 
-Between rough surfaces a pressure gradient drives less fluid; below a mean gap of 0.4 roughnesses no path is left.  The flow
-factor of an effective medium against none: as less fluid leaks out, asperities carry less.  Laws: docs/fluids.md; the plain
+Between rough surfaces a pressure gradient drives less fluid; below a mean gap of 0.4 roughnesses no path is left.  With
+the flow factor of an effective medium less fluid leaks out, and asperities carry less.  Laws: docs/fluids.md; the plain
 model: theory.md.  Runs in two seconds.
 """
 

@@ -1,9 +1,9 @@
 """
-The viscosity falls with the shear rate
-=======================================
+What does shear thinning do to the film?
+========================================
 
-A Carreau fluid whose relaxation time is 0.057 of the indentation over the speed at speed group 0.001, against a Newtonian
-one: the film is a third as thick, and mixed lubrication reaches to higher speeds.  Laws: docs/fluids.md; the plain model:
+A Carreau fluid (relaxation time 0.057 of the indentation over the speed, at speed group 0.001) has a film a third as thick as
+a Newtonian one, and mixed lubrication reaches to higher speeds.  Laws: docs/fluids.md; the plain model:
 theory.md.  Runs in five seconds.
 """
 

@@ -1,7 +1,7 @@
-"""Which friction force balances
-=============================
+"""Which friction force balances?
+==============================
 
-And where the printed one departs from it.  The identities of theory.md, section 6, on solved states: int p w' dx = 0,
+And where does the printed one depart from it?  The identities of theory.md, section 6, on solved states: int p w' dx = 0,
 int p_c h' dx = 0, and the difference of the viscous frictions.  Slopes are differences.  Runs in half a second.
 """
 

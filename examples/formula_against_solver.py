@@ -1,8 +1,8 @@
-"""A formula judged by the solver
-==============================
+"""How good is the closed form for friction?
+=========================================
 
-How far off is the closed form for the friction at every speed, theory.md section 10?  The solver uses no formula, so that it
-can judge them all.  Runs in a second.
+The closed form for friction at every speed, theory.md section 10, against the solver, which uses no formula.
+Runs in a second.
 """
 
 import stribeck as sb

@@ -1,10 +1,10 @@
 """
-Friction over a stroke to and fro
-=================================
+How does friction change over a stroke?
+=======================================
 
 A cylinder moves to and fro on a slow rig, over 53 half-widths of its contact.  The film of the fast phase is trapped where the
-motion turns, so that friction is another one on either side of a reversal.  The animation runs through a cycle; the picture
-below it is that of the stroke itself.  Equations: docs/theory.md and docs/strokes.md.  Runs in ten seconds.
+motion turns, so friction differs before and after a reversal.  The animation runs through a cycle; the picture below it shows
+the whole stroke.  Equations: docs/theory.md and docs/strokes.md.  Runs in ten seconds.
 """
 
 from pathlib import Path

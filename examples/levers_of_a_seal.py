@@ -1,5 +1,5 @@
-"""What lowers the friction of a seal
-==================================
+"""What lowers the friction of a seal?
+===================================
 
 Half the roughness, or oil twice as viscous?  A seal under Persson's contact law, theory.md section 8, over the speeds of its
 stroke; docs/for_engineers.md walks through it.  Runs in five seconds.

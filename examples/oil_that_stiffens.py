@@ -1,9 +1,9 @@
 """
-The viscosity grows with the pressure
-=====================================
+What does an oil that stiffens under pressure change?
+=====================================================
 
-Barus' law with a pressure coefficient of one over the Hertz pressure, as of an oil at 50 MPa, against a fluid of constant
-viscosity: the film is an eighth thicker, the friction in it twice as large.  Laws: docs/fluids.md; the plain model:
+Barus' law with a pressure coefficient of one over the Hertz pressure, as of an oil at 50 MPa.  Compared with a constant
+viscosity the film is an eighth thicker and the friction in it twice as large.  Laws: docs/fluids.md; the plain model:
 theory.md.  Runs in two seconds.
 """
 

@@ -1,7 +1,7 @@
-"""One state and its profile
-=========================
+"""Who carries the load at one speed?
+==================================
 
-In mixed lubrication: who carries the load, and what the film looks like.
+A state in mixed lubrication: the loads on asperities and fluid, and the film.
 
 Equations: theory.md Eqs. (1)-(5).  Reference: Bertin and Pouliquen, Fig. 8, for its parameters.
 Runs in a tenth of a second.

@@ -1,5 +1,5 @@
-"""The regimes of one contact
-==========================
+"""In which regime is my contact?
+==============================
 
 At which speed does lubrication change, and how does that depend on roughness?  The PDMS cylinder again, its transitions on
 solved states; the criteria are in theory.md, section 9.  Runs in five seconds.

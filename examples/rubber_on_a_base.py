@@ -1,9 +1,9 @@
 """
-A layer on a rigid base
-=======================
+What does a rigid base under the rubber change?
+===============================================
 
-An incompressible layer that is bonded to a rigid base and as thick as the Hertz half-width, against the half-space: the
-pressure is higher, the film thinner.  Laws: docs/fluids.md; the plain model: theory.md.  Runs in two seconds.
+An incompressible layer, bonded to a rigid base and as thick as the Hertz half-width: the pressure is higher than on a
+half-space, the film thinner.  Laws: docs/fluids.md; the plain model: theory.md.  Runs in two seconds.
 """
 
 import numpy as np

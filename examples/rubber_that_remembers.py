@@ -1,10 +1,10 @@
 """
-Rubber that remembers
-=====================
+What does viscoelastic rubber cost in friction?
+===============================================
 
-A standard linear solid, three times as stiff at once as at rest, slides over the cylinder: what comes into the contact is
-stiff, what leaves it still lies deep.  Smooth lubricated contacts at one speed group for three Deborah numbers, speed times
-retardation time over half-width; the lag costs friction.  Laws: docs/fluids.md; the plain model: theory.md.  Runs in three
+A standard linear solid, three times stiffer at once than at rest, slides over the cylinder.  It enters the contact stiff and
+leaves it before it has recovered; that lag costs friction.  Smooth lubricated contacts at three Deborah numbers (speed times
+retardation time over half-width).  Laws: docs/fluids.md; the plain model: theory.md.  Runs in three
 seconds.
 """
 

@@ -1,10 +1,10 @@
-"""A seal from its contact pressure
-================================
+"""From the contact pressure of a seal to its films
+================================================
 
-A U-cup is no parabola, and its shape under load is the work of finite elements.  Their contact pressure is enough: from it
-follow the shape that a half-space would need, theory.md section 13, and the film of either stroke.  The film of the stroke out
-is thinner than that of the stroke in, so the seal takes oil back; the formula of docs/leakage.md says by how much, without
-asperities.  The pressure is that of a formula, see the file.  Runs in ten seconds.
+A U-cup is no parabola; finite elements give its contact pressure.  From that follow the shape that a half-space would need,
+theory.md section 13, and the films of both strokes.  The film of the stroke out is thinner than that of the stroke in, so the
+seal takes oil back; the formula of docs/leakage.md says how much, without asperities.  The pressure is synthetic.
+Runs in ten seconds.
 """
 
 from pathlib import Path

@@ -1,7 +1,7 @@
-"""A Stribeck curve
-================
+"""Where is the friction minimum?
+==============================
 
-That of a PDMS cylinder in glycerol-water, from a data sheet to the minimum friction.
+The Stribeck curve of a PDMS cylinder in glycerol-water, from a data sheet to the minimum of friction.
 
 Equations: theory.md Eqs. (1)-(5).  Reference: Bertin and Pouliquen, Section "Stribeck curve".
 Runs in about a second.

@@ -1,9 +1,9 @@
-"""From heights to the contact law
-===============================
+"""From a measured profile to the contact law
+==========================================
 
-What a measured profile says of h_rms, alpha and beta, and how well.
+A profile gives h_rms, alpha and beta, each with its error.
 
-The spectrum and Persson's relation of theory.md, section 8; docs/surfaces.md.  The profile is made, with H = 0.8,
+The spectrum and Persson's relation of theory.md, section 8; docs/surfaces.md.  The profile is synthetic, with H = 0.8,
 h_rms = 0.6 um and a roll-off at 105 um, on a cylinder of 8 mm.  Runs in two seconds.
 """
 

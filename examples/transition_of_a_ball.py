@@ -1,5 +1,5 @@
-"""The transition of a ball over its roughness
-===========================================
+"""At which film does a rough ball leave mixed lubrication?
+========================================================
 
 Bongaerts, Fourtouni and Stokes (2007) slid PDMS balls with roughnesses up to 3.6 um over PDMS discs and found the transition
 to full films at 0.7 to 11 times the roughness.  Here such a ball is solved with Persson's law for three heights of one kind of

@@ -1,5 +1,5 @@
-"""Two contact laws at a heavy load
-================================
+"""Which contact law for a heavy load?
+===================================
 
 From load group one on the exponential law cannot carry the load at a positive gap; Persson's law, from a power spectrum, can.
 The range of the laws is in theory.md, section 8, all of them in docs/contact_laws.md.  Runs in three seconds.

@@ -1,5 +1,5 @@
-"""What moves the friction minimum
-===============================
+"""What moves the friction minimum?
+================================
 
 Each quantity of the contact is doubled alone; the minimum is located on solved states.
 Equations: theory.md Eqs. (1)-(5).  Reference: Bertin and Pouliquen, Eq. (minimal_friction), by which the

@@ -1,8 +1,8 @@
-"""What the fluid, its cavity and the solid change
-===============================================
+"""Fluid, cavity, solid: how much does each change?
+================================================
 
-The same contact (load group 0.1, relative roughness 0.001) with one thing more each time: the film ends behind the contact,
-the fluid stiffens or thins, roughness hinders its flow, the rubber is a layer on a rigid base, both surfaces roll.  The laws
+The same contact (load group 0.1, relative roughness 0.001) with one change at a time: the film ends behind the contact, the
+fluid stiffens or thins, roughness hinders its flow, the rubber is a layer on a rigid base, both surfaces roll.  The laws
 are in docs/fluids.md, the plain model in theory.md.  Runs in half a minute.
 """
 

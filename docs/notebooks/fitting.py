@@ -13,9 +13,8 @@
 # %% [markdown]
 # # Fitting a measured curve
 #
-# Friction against speed goes in; roughness, modulus and dry friction coefficient come out, with intervals, and with what
-# the data do not say. The data
-# are synthetic, with 4 % of noise: friction coefficient 0.62, roughness 1.3 µm, modulus 2.3 MPa.
+# From friction against speed to roughness, modulus and dry friction coefficient, with intervals and with what the data
+# cannot determine. The data are synthetic, with 4 % of noise: friction coefficient 0.62, roughness 1.3 µm, modulus 2.3 MPa.
 
 # %%
 # %matplotlib inline
@@ -39,24 +38,24 @@ plot_fit(fit)
 # %% [markdown]
 # ## Noise or misfit?
 #
-# No interval covers a wrong model. The order of the residuals along each curve tells: by chance it would look like this
-# in so many cases of a hundred.
+# No interval covers a wrong model. The order of the residuals along each curve shows a misfit; the number is the probability
+# that chance alone gives such an order.
 
 # %%
 print(f"{100 * fit.quality.structure_probability:.0f} of 100")
 assert fit.quality.structure_probability > 0.01
 
 # %% [markdown]
-# ## What hangs together
+# ## Which inputs are correlated
 #
-# Roughness and modulus are found together rather than alone: a softer, rougher contact looks nearly the same.
+# The data determine a product of roughness and modulus better than either: a softer, rougher contact looks nearly the same.
 
 # %%
 print(fit.correlation)
 print(*fit.notes, sep="\n")
 
 # %% [markdown]
-# ## What cannot be known
+# ## What the data cannot determine
 #
 # Free `alpha` beside the roughness: friction depends on their quotient alone. The fit says so instead of printing a number.
 
@@ -67,9 +66,9 @@ for weak in loose.undetermined:
 assert loose.undetermined and loose["alpha"].interval_95 == (0.0, float("inf"))
 
 # %% [markdown]
-# ## Into a prediction
+# ## A prediction
 #
-# The fitted contact is an ordinary contact. Its minimum friction in the first fluid, solved, not read off the data:
+# The fitted contact is an ordinary contact. This is its solved minimum of friction in the first fluid:
 
 # %%
 curve = sb.stribeck_curve(fit.contact)

@@ -14,8 +14,7 @@
 # # The paper in one hour
 #
 # The mean-field model of Bertin and Pouliquen for the friction of a rough, lubricated line contact, from its three groups
-# to the phase
-# diagram. Run the cells in order; each takes seconds. All derivations are on the page *Theory*.
+# to the phase diagram. Run the cells in order; each takes seconds. All derivations are on the page *Theory*.
 #
 # ## Three numbers
 #
@@ -40,10 +39,9 @@ print(contact.groups)
 # %% [markdown]
 # ## One state
 #
-# The gap $h$ fixes the pressure of the asperities, $p_c = \bar F_N^{-1/2} e^{-h/\kappa}$ with $\kappa = \bar
-# h_\mathrm{rms}/\bar F_N$,
-# and by Reynolds' equation that of the fluid. Both together deform the half-space, which fixes the gap. `solve` finds it,
-# with an error.
+# The gap $h$ sets the pressure of the asperities, $p_c = \bar F_N^{-1/2} e^{-h/\kappa}$ with
+# $\kappa = \bar h_\mathrm{rms}/\bar F_N$, and that of the fluid, by Reynolds' equation. Both deform the half-space, and this
+# sets the gap. `solve` finds the gap and its error.
 
 # %%
 state = sb.solve(sb.Groups(speed=1e-4, load=0.1, roughness=1e-4))
@@ -82,8 +80,7 @@ assert abs(curve.minimum.friction - 0.02682) < 1e-5
 
 # %% [markdown]
 # For the minimum friction the article prints a formula that gives 0.0033 here; with the sign of one exponent corrected it
-# gives 0.0219. The errata list 37 such
-# places, each with a test.
+# gives 0.0219. The errata list 37 such places, each with a test.
 #
 # ## Slow: the boundary
 #

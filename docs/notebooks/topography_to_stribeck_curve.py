@@ -13,9 +13,8 @@
 # %% [markdown]
 # # From a topography to a Stribeck curve
 #
-# A profile from a profilometer goes in, a friction curve with a band of uncertainty comes out. The profile is made, not
-# measured, so that the
-# right answers are known: a cylinder of 8 mm with 0.6 µm of roughness, Hurst exponent 0.8, roll-off at 105 µm.
+# From the profile of a profilometer to a friction curve with a band of uncertainty. The profile is synthetic, so the right
+# answers are known: a cylinder of 8 mm with 0.6 µm of roughness, Hurst exponent 0.8, roll-off at 105 µm.
 
 # %%
 # %matplotlib inline
@@ -43,9 +42,9 @@ from stribeck.plot.surface import plot_surface
 plot_surface(surface)
 
 # %% [markdown]
-# ## Into a contact
+# ## The contact
 #
-# The law brings `alpha`, `beta` and the roughness; the scan brings the radius; the rest stands on data sheets.
+# The law gives `alpha`, `beta` and the roughness, the scan the radius, data sheets the rest.
 
 
 # %%
@@ -67,10 +66,10 @@ print(f"load group {contact(surface.law).groups.load:.2f}")
 print(f"minimum friction {curve.minimum.friction:.4f} at {1e3 * curve.minimum.speed:.2f} mm/s")
 
 # %% [markdown]
-# ## How sure is that
+# ## How certain is this?
 #
-# The fit of the spectrum gives errors. Here its two largest, those of the height and of the roll-off, go through the
-# whole chain one at a time, and are added as if they were independent.
+# The fit of the spectrum gives errors. The two largest, of the height and of the roll-off, go through the whole chain one at a
+# time and are added as if they were independent.
 
 # %%
 from dataclasses import replace
@@ -97,7 +96,7 @@ assert 0.05 < worst < 0.5
 # %% [markdown]
 # ## What the exponential law would have said
 #
-# It is the limit of small pressure. With the same `alpha` and `beta`:
+# The exponential law is the limit of small pressure. With the same `alpha` and `beta`:
 
 # %%
 plain = sb.LineContact(
