@@ -179,6 +179,14 @@ FROM_THE_FIELD = {
 }
 
 
+def test_files_that_differ_more_than_noise_are_to_be_named(written):
+    rows = stepped(np.random.default_rng(812))
+    thinner = rows * [1, 1, 1, 2]
+    files = [written(text_of(each), name) for name, each in (("water_1.csv", rows), ("oil_1.csv", thinner))]
+    assert any("need names: --name '{fluid}'" in note for note in sb.bench.read(files).notes)
+    assert not any("--name" in note for note in sb.bench.read(files, name="{fluid}_{run}").notes)
+
+
 def test_files_from_the_field_are_read(subtests):
     for name, points in FROM_THE_FIELD.items():
         with subtests.test(name=name):

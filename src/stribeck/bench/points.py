@@ -114,9 +114,10 @@ def points_of(
             error = math.sqrt(float(covariance[k, k])) * factor if usable[level == k].any() else math.nan
             points.append(_point(curve, of, series, float(friction[k]), quantile * error))
     if widened:
+        advice = " Files of different fluids need names: --name '{fluid}' (in Python name=)." if len(paths) > 1 else ""
         said.append(
             f"Passes at the same speed differ by {max(widened):.2g} times what the noise within them allows, and errors are "
-            "larger by that."
+            f"larger by that.{advice}"
         )
     return points, said
 
