@@ -144,9 +144,9 @@ GALLERY = (
 """The examples in the order of the gallery; others come last."""
 
 
-def in_order(folder):
-    """Return the key by which the gallery sorts the files of its folder."""
-    return lambda name: GALLERY.index(Path(name).stem) if Path(name).stem in GALLERY else len(GALLERY)
+def in_order(name):
+    """Return the place of an example in the gallery."""
+    return GALLERY.index(Path(name).stem) if Path(name).stem in GALLERY else len(GALLERY)
 
 
 def keep_pictures(block, block_vars, gallery_conf):
