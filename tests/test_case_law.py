@@ -85,6 +85,12 @@ def test_a_table_is_read_beside_its_case_with_or_without_units(case):
 WRONG = [
     ("persson", OF_SURFACE, {}, "the table [surface] is missing, which law = 'persson' needs; give h_rms"),
     ("persson", {"beta": "0.06"}, {"surface": {}}, "[contact] beta = 0.06 follows from the table [surface]; remove"),
+    (
+        "persson",
+        {"rq": "1e-6"},
+        {"surface": {}},
+        "[contact] roughness = 1e-06 follows from the table [surface], by its h_rms (ra and rq",
+    ),
     ("persson", {}, {"surface": {"hurst": "1.5"}}, "[surface] hurst = 1.5"),
     ("persson", {}, {"surface": {"hurst": None}}, "hurst is missing; add a bare number, for example hurst = 0.8."),
     ("persson", {}, {"surface": {"Hurst": "0.8"}}, "[surface] Hurst = 0.8 is not a known key; did you mean"),

@@ -86,9 +86,9 @@ def law_of_file(law: Law, contact: dict[str, Any], tables: dict[str, dict[str, A
         return shape, {}
     doubled = [key for key in INPUTS_OF_SURFACES if coefficients and contact.get(key) is not None]
     if doubled:
-        raise InputError(
-            f"[contact] {doubled[0]} = {contact[doubled[0]]:g} follows from the table [{name}]; remove one of them."
-        )
+        key = doubled[0]
+        height = ", by its h_rms (ra and rq are a roughness too)" if key == "roughness" and "h_rms" in entries else ""
+        raise InputError(f"[contact] {key} = {contact[key]:g} follows from the table [{name}]{height}; remove one of them.")
     return shape, coefficients
 
 
