@@ -300,6 +300,13 @@ def test_regimes_tells_the_regime_the_transitions_and_what_moves_friction_also_i
         assert re.search(row, answer.out), row
 
 
+def test_a_load_that_lowers_the_coefficient_is_said_to_raise_the_force(tmp_path, capsys):
+    fast = tmp_path / "fast.toml"
+    fast.write_text(case_text({"speed": '"1 m/s"'}))
+    said = call(capsys, "regimes", str(fast)).out
+    assert re.search(r"load; 10 % more lowers friction by 7\.\d+ % \(the coefficient; the force changes by \+1\.7 %\)\.", said)
+
+
 def test_regimes_as_json_gives_transitions_as_factors_of_the_speed(capsys):
     found = strict_json(call(capsys, "regimes", PDMS, "--json").out)
     assert (found["regime"], found["inputs"]["speed"], found["units"]["speed"]) == ("mixed", 0.001, "m/s")

@@ -109,7 +109,9 @@ def _strongest(found: Overview) -> list[str]:
     slope = found.sensitivities[most]
     factor, way = (0.9, "less") if slope > 0 else (1.1, "more")
     name = found.case.contact.INPUTS.quantities[most].label
-    return [f"Strongest lever: {name}; 10 % {way} lowers friction by {-100 * (factor**slope - 1):.3g} %."]
+    # Friction is the coefficient: a load may lower it and yet raise the force.
+    force = f" (the coefficient; the force changes by {100 * (factor ** (1 + slope) - 1):+.2g} %)" if most == "load" else ""
+    return [f"Strongest lever: {name}; 10 % {way} lowers friction by {-100 * (factor**slope - 1):.3g} %{force}."]
 
 
 def _way(factor: float) -> str:
