@@ -320,6 +320,16 @@ def test_the_inputs_of_a_report_name_fluid_and_solid_and_their_errors(tmp_path, 
     assert error == "thickness of the layer ± 5 %"
 
 
+@pytest.mark.usefixtures("no_margins")
+def test_a_load_among_the_levers_of_a_report_has_its_force(tmp_path):
+    """In a full film more load lowers the coefficient, and raises the force."""
+    path = tmp_path / "case.toml"
+    path.write_text(case_text({"speed": '"1 m/s"'}))
+    sections = {each.heading: each for each in sb.write_report(path, tmp_path / "report.html").sections}
+    [said] = [friction for name, _, friction in sections["The two cheapest levers"].table if name == "load"]
+    assert said == "0.241 (-20 %; the force +5 %)"
+
+
 @pytest.mark.quick
 def test_the_squeeze_of_an_o_ring_gives_its_load(subtests):
     """Lindley's formula at 10, 20 and 30 %: 0.0396, 0.115 and 0.242 times E d."""

@@ -44,7 +44,8 @@ class Lever(Record):
         """What is to be changed, and to what friction."""
         step = f"x {self.factor:.3g}" if self.factor > 1 else f"/ {1 / self.factor:.3g}"
         to = format_si(self.value, self.dimension)
-        return f"{step} (to {to})", f"{self.friction:.3g} ({100 * self.change:+.0f} %)"
+        force = f"; the force {100 * (self.factor * (1 + self.change) - 1):+.0f} %" if self.name == "load" else ""
+        return f"{step} (to {to})", f"{self.friction:.3g} ({100 * self.change:+.0f} %{force})"
 
 
 def strongest_lever(sensitivities: Mapping[str, float]) -> str | None:
