@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache, partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -25,9 +25,6 @@ from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.solver.point.state import PointState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import solve
-
-if TYPE_CHECKING:
-    pass
 
 __all__ = ["FIELDS", "MEASURED", "REFERENCE_RTOL", "judged_groups", "relative_error"]
 

@@ -24,6 +24,9 @@ ARGUMENTS: dict[str, str] = {
     "load": "Load group [-], between 0 and 1.",
     "speed": "Speed group, zero or positive [-].",
     "slope": "a/R [-].",
+    "reach": "Half-width of the box, in units of the layer.",
+    "width": "Width of the panels near the edge.",
+    "order": "Nodes on each panel.",
     "share": "Part of the load on the fluid [-], between 0 and 1.",
     "form": "Form of :func:`phi`.",
     "printed": "As the article prints it, see :func:`fluid_load_share`.",
@@ -96,13 +99,19 @@ def completed(
 
 
 def described(
-    returns: str, *, kind: str = "float or ndarray", raises: str = "", source: str = "", **words: str
+    returns: str,
+    *,
+    kind: str = "float or ndarray",
+    raises: str = "",
+    error: str = "InputError",
+    source: str = "",
+    **words: str,
 ) -> Callable[[F], F]:
     """Return the decorator that completes the docstring of a function that is no formula; ``words`` describe its arguments."""
 
     def decorate(function: F) -> F:
         if function.__doc__ is not None:  # as it is under `python -OO`
-            refused = f"InputError\n    {raises}" if raises else ""
+            refused = f"{error}\n    {raises}" if raises else ""
             function.__doc__ = _filled(
                 function, words, f"{kind}\n    {returns}", refused, f"Source: {source}." if source else ""
             )

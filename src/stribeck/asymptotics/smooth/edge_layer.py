@@ -28,6 +28,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.judged import line_at_rest
 from stribeck.asymptotics.smooth.half_line import HalfLine, Layer
@@ -108,28 +109,17 @@ def contact_pressure(groups: Groups, x: Value, printed: bool = False) -> Value:
 
 @lru_cache(maxsize=4)
 @one_blas_thread
+@described(
+    "Gap and pressure, the contact at negative coordinates.",
+    kind="Layer",
+    raises="If Newton's iteration fails, which it does not at the default panels.",
+    error="RuntimeError",
+)
 def layer(reach: float = 1e5, width: float = 0.5, order: int = 12) -> Layer:
     r"""Solve the similarity problem of the edge.
 
     Unknown at the nodes is u of :math:`H = u - \ln P_1`, with :math:`P_1` :attr:`.half_line.Base.root`, so that
     small differences of large pressures are exact; it is scaled by its decay inside.
-
-    Parameters
-    ----------
-    reach : float
-        Half-width of the box, in units of the layer.
-    width, order : float, int
-        Width of the panels near the edge and nodes on each.
-
-    Returns
-    -------
-    Layer
-        Gap and pressure, the contact at negative coordinates.
-
-    Raises
-    ------
-    RuntimeError
-        If Newton's iteration fails, which it does not at the default panels.
 
     Notes
     -----

@@ -26,6 +26,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.judged import smooth_line
 from stribeck.asymptotics.smooth.half_line import HalfLine, Layer
@@ -115,25 +116,14 @@ def fluid_pressure_outlet(groups: Groups, x: Value) -> Value:
 
 
 @lru_cache(maxsize=4)
+@described(
+    "Gap and pressure, the contact at negative coordinates; its ``constant`` is c.",
+    kind="Layer",
+    raises="If Newton's iteration fails, which it does not at the default panels.",
+    error="RuntimeError",
+)
 def inlet(reach: float = 1e6, width: float = 0.25, order: int = 12) -> Layer:
     """Solve the similarity problem of the inlet, which selects the film.
-
-    Parameters
-    ----------
-    reach : float
-        Half-width of the box, in units of the layer.
-    width, order : float, int
-        Width of the panels near the edge and nodes on each.
-
-    Returns
-    -------
-    Layer
-        Gap and pressure, the contact at negative coordinates; its ``constant`` is c.
-
-    Raises
-    ------
-    RuntimeError
-        If Newton's iteration fails, which it does not at the default panels.
 
     Notes
     -----

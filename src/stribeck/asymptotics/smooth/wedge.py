@@ -19,15 +19,18 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Annotated
 
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Limit, Value, fluid_number, formula
 from stribeck.contacts.groups import Groups
 from stribeck.numerics.newton import Dense, StepControl, root_find
 from stribeck.numerics.panels import reference
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.docstrings import Described
 from stribeck.quantities.units import InputError, show
 
 NODES_PER_PANEL = 12  # Gauss points of a panel: contact shares err by 1e-9, down to shares of 1e-5.
@@ -44,52 +47,26 @@ MAX_FLUID_NUMBER = 1e3
 
 
 @dataclass(frozen=True)
-class Wedge:
-    """A solution of the limit.
+class Wedge(Described):
+    """A solution of the limit."""
 
-    Attributes
-    ----------
-    x : ndarray, shape (n,)
-        Positions between the edges [a].
-    gap : ndarray, shape (n,)
-        H [kappa u_Hz].
-    fluid_pressure : ndarray, shape (n,)
-        p_f [p_Hz].
-    flux_gap : float
-        H* [kappa u_Hz].
-    contact_load_share : float
-        Part of the load on asperities [-].
-    """
-
-    x: Array
-    gap: Array
-    fluid_pressure: Array
-    flux_gap: float
-    contact_load_share: float
+    x: Annotated[Array, "positions between the edges, shape (n,)", "a"]
+    gap: Annotated[Array, "gap H, shape (n,)", "kappa u_Hz"]
+    fluid_pressure: Annotated[Array, "fluid pressure, shape (n,)", "p_Hz"]
+    flux_gap: Annotated[float, "flux gap H*", "kappa u_Hz"]
+    contact_load_share: Annotated[float, "part of the load on asperities", "1"]
 
 
 @lru_cache(maxsize=256)
 @one_blas_thread
+@described(
+    "Gap, fluid pressure, flux gap, contact share.",
+    kind="Wedge",
+    raises="If an argument is outside its range, or no solution is reached.",
+    fluid_number="Speed group over the square of the relative roughness [-], not negative.",
+)
 def wedge(load: float, fluid_number: float) -> Wedge:
-    """Solve the limit at one load and fluid number.
-
-    Parameters
-    ----------
-    load : float
-        Load group [-], between 0 and 1.
-    fluid_number : float
-        Speed group over the square of the relative roughness [-], not negative.
-
-    Returns
-    -------
-    Wedge
-        Gap, fluid pressure, flux gap, contact share.
-
-    Raises
-    ------
-    InputError
-        If an argument is outside its range, or no solution is reached.
-    """
+    """Solve the limit at one load and fluid number."""
     if not 0 < load < 1:
         raise InputError(
             f"load = {show(load)}; nearly smooth static contacts have a positive gap only for loads between 0 and 1."
