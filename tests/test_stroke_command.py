@@ -52,7 +52,8 @@ def test_the_answer_is_friction_beside_steady_sliding_and_files_hold_the_rest(ca
         ({"motion": '"sine"', "stroke": '"5 cm"', "frequency": "2.0"}, sb.motions.Sine(0.05, 2.0)),
         ({"motion": '"stop"', "start": "0.1", "braking_time": '"10 ms"', "rest": "1.0"}, sb.motions.Stop(0.1, 0.01, 1.0)),
         (
-            {"motion": '"table"', "time": '[0, "0.5 s", 1]', "velocity": "[0.1, 0.2, 0.1]", "repeats": "true", "cycles": "3"},
+            {"motion": '"table"', "time": '[0, "0.5 s", 1]', "velocity": "[0.1, 0.2, 0.1]", "repeats": "true", "cycles": "3"}
+            | {"inlet": '"own-wake"'},
             sb.motions.Table([0, 0.5, 1], [0.1, 0.2, 0.1], repeats=True),
         ),
     ],
@@ -60,7 +61,8 @@ def test_the_answer_is_friction_beside_steady_sliding_and_files_hold_the_rest(ca
 def test_every_motion_is_read_from_its_table(write, table, motion):
     found = sb.load_case(write(table)).stroke
     assert found.motion == motion
-    assert found.arguments == {"motion": motion} | {k: int(table[k]) for k in ("cycles", "steps") if k in table}
+    given = {key: json.loads(table[key]) for key in ("cycles", "steps", "inlet") if key in table}
+    assert found.arguments == {"motion": motion} | given
 
 
 @pytest.mark.parametrize(
@@ -72,6 +74,8 @@ def test_every_motion_is_read_from_its_table(write, table, motion):
         (RAMP | {"end": '"3 mm"'}, "[stroke] end = '3 mm' is a length"),
         (RAMP | {"frequency": "1.0"}, "[stroke] frequency = 1.0 is given, but motion = 'ramp' has no such key"),
         (RAMP | {"steps": "17"}, "steps = 17; it must be an even number"),
+        (RAMP | {"inlet": '"own-wake"'}, "needs a film that ends"),
+        (RAMP | {"inlet": '"dry"'}, "[stroke] inlet = 'dry' must be 'flooded' or 'own-wake'"),
         (RAMP | {"cycles": "2"}, "does not end as it begins"),
         (RAMP | {"cycles": "0.5"}, "[stroke] cycles = 0.5 must be a whole number"),
         (
@@ -102,6 +106,15 @@ def test_a_table_of_shear_stresses_goes_on_below_its_first_speed_and_not_above_i
     faster = RAMP | {"end": '"4 mm/s"'}
     answer = call(capsys, "stroke", write(faster, by_surface, surface=rough, asperity_friction=stress))
     assert answer.code == 2 and "outside the table of shear stresses" in answer.err
+
+
+def test_a_contact_runs_into_its_own_wake_where_the_case_or_the_command_says_so(capsys, write):
+    motion = {"motion": '"table"', "time": "[0, 0.1, 0.2]", "velocity": "[1e-2, 1e-2, -1e-2]", "steps": "16"}
+    known = []
+    for inlet, words in (('"own-wake"', []), ('"own-wake"', ["--inlet", "flooded"]), ('"flooded"', ["--inlet", "own-wake"])):
+        case = write(motion | {"inlet": inlet}, cavitation={"model": '"exit"'})
+        known.append(json.loads(call(capsys, "stroke", case, "--json", *words).out))
+    assert ["what the contact has left" in each["notes"][0] for each in known] == [True, False, True]
 
 
 def test_a_film_that_ends_does_so_unless_it_is_asked_to_be_full(capsys, write):

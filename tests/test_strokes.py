@@ -158,6 +158,53 @@ def test_a_film_that_ends_turns_with_the_motion():
         assert np.allclose(out, back, atol=0.01 * back.max()), name
 
 
+def out_and_back(out, back, half_widths=10.0, part=0.9):
+    """Return a motion out at one speed and a part of the way back at another one."""
+    length = half_widths * HALF_WIDTH
+    turn = 0.02 * length / out
+    times = np.cumsum([0.0, length / out, turn, part * length / back])
+    return sb.motions.Table(list(times), [out, out, -back, -back])
+
+
+def test_a_contact_that_runs_into_a_thick_wake_is_flooded():
+    """The wake of the fast way out is more than the slow way back can draw in."""
+    contact, motion = CONTACT.replace(cavitation="exit"), out_and_back(SPEED, 0.1 * SPEED)
+    flooded, own = (sb.stroke(contact, motion, steps=64, inlet=inlet) for inlet in ("flooded", "own-wake"))
+    for name in flooded.errors:
+        assert np.allclose(getattr(own, name), getattr(flooded, name), rtol=1e-6, atol=0), name
+    assert "has what the contact has left behind itself" in own.notes[0] and "is flooded" in flooded.notes[0]
+
+
+def test_a_contact_that_runs_into_a_thin_wake_draws_in_no_more_than_that():
+    """On the fast way back the film is about that of the slow way out, a third of that of a flooded inlet."""
+    contact, motion = CONTACT.replace(cavitation="exit"), out_and_back(0.1 * SPEED, SPEED)
+    flooded, own = (sb.stroke(contact, motion, steps=400, inlet=inlet) for inlet in ("flooded", "own-wake"))
+    slow = sb.solve(contact.replace(speed=0.1 * SPEED))
+    film = slow.flux_gap * contact.hertz.indentation
+    passed = 2 * np.abs(own.right_flow[-1]) / SPEED
+    assert passed == pytest.approx(film, rel=1e-3)
+    assert 0.99 < own.central_gap[-1] / own.central_gap[0] < 1.01 < 2.5 < flooded.central_gap[-1] / flooded.central_gap[0]
+    assert own.friction[-1] < 10 * flooded.friction[-1] < 0
+    # The difference is within the error of the fewest steps that a motion may have.
+    few = sb.stroke(contact, motion, steps=40, inlet="own-wake")
+    assert abs(few.central_gap[-1] - own.central_gap[-1]) < few.errors["central_gap"][-1]
+
+
+def test_no_liquid_comes_out_of_a_wake_that_has_not_gone_into_it():
+    """On no position of the way back has it drawn in more than it has left from there on: a flooded inlet has."""
+    contact = CONTACT.replace(cavitation="exit")
+    own, flooded = (sb.stroke(contact, sine(8), steps=48, cycles=3, inlet=inlet) for inlet in ("own-wake", "flooded"))
+    for found, holds in ((own, True), (flooded, False)):
+        for flow, turns in ((found.right_flow, (60, 108)), (-found.left_flow, (36, 84))):
+            gone = np.concatenate([[0.0], np.cumsum(0.5 * (flow[1:] + flow[:-1]) * np.diff(found.time))])
+            for turn in turns:
+                drawn, left = gone[turn] - gone[turn : turn + 25], gone[turn] - gone[turn - 24 : turn + 1][::-1]
+                assert bool((drawn < left + 0.01 * np.ptp(gone)).all()) is holds
+    last = own.last_cycle
+    assert np.abs(own.friction[last]).max() > 1.2 * np.abs(flooded.friction[last]).max()
+    assert own.work > 1.2 * flooded.work
+
+
 def test_a_thick_film_is_squeezed_out_as_under_a_rigid_cylinder():
     """F = 3 2**(1/2) pi eta V (R/h)**(3/2), so that h**(-1/2) grows evenly; but for the elastic indentation over the film."""
     thick = CONTACT.replace(viscosity=CONTACT.viscosity * 1e10)
@@ -174,11 +221,14 @@ def test_a_thick_film_is_squeezed_out_as_under_a_rigid_cylinder():
         ({"solid": sb.solids.StandardLinearSolid("10 ms", 3.0)}, "the body remembers"),
         ({"slide_to_roll": 1.0}, "pure sliding"),
         ({"roughness": 0.0}, "roughness is zero"),
+        ({"inlet": "own-wake"}, "needs a film that ends"),
+        ({"inlet": "dry"}, "'flooded' or 'own-wake'"),
     ],
 )
 def test_what_is_not_solved_in_time_is_refused_by_its_name(change, word):
+    inlet = change.pop("inlet", "flooded")
     with pytest.raises(sb.InputError, match=word):
-        sb.stroke(CONTACT.replace(**change), sine(40))
+        sb.stroke(CONTACT.replace(**change), sine(40), inlet=inlet)
 
 
 @pytest.mark.parametrize(

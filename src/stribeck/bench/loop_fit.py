@@ -31,7 +31,7 @@ from stribeck.quantities.formats import format_percent
 from stribeck.quantities.results import ByValue, Card, Told
 from stribeck.quantities.units import InputError, show
 from stribeck.strokes.result import Stroke
-from stribeck.strokes.stroke import stroke
+from stribeck.strokes.stroke import Inlet, stroke
 
 __all__ = ["LoopFit", "fit_loop"]
 
@@ -134,6 +134,7 @@ def fit_loop(
     *,
     free: Sequence[str] | None = None,
     steps: int | None = None,
+    inlet: Inlet | None = None,
     on_step: Callable[[int], object] | None = None,
 ) -> LoopFit:
     r"""Fit inputs of a line contact to a friction loop of a motion to and fro.
@@ -155,6 +156,8 @@ def fit_loop(
         Inputs to fit; those of the case, else boundary friction, or the shear stress in its place, and roughness.
     steps : int, optional
         Steps of a cycle; those of the case, else 120.
+    inlet : {"flooded", "own-wake"}, optional
+        What is before the contact, see :func:`stribeck.stroke`; that of the case, else flooded.
     on_step : callable, optional
         ``on_step(strokes)`` is called after each stroke that was solved.
 
@@ -185,34 +188,33 @@ def fit_loop(
     >>> print(found)  # doctest: +SKIP
     """
     loop = data if isinstance(data, Loop) else read_loop(data)
-    contact, settings, motion, steps = _problem(case, motion, steps)
+    contact, settings, arguments = _problem(case, {"motion": motion, "steps": steps, "inlet": inlet})
     names = names_to_fit(free, settings, contact)
     of_free = Measurements("speed", np.ones(1), np.ones(1), None, np.zeros(1, int), ("",), ({},), np.ones(1, int))
-    model = _LoopModel(contact, motion, steps, free_inputs(contact, of_free, names, settings), loop, on_step)
+    model = _LoopModel(contact, arguments, free_inputs(contact, of_free, names, settings), loop, on_step)
     if len(model.data) <= 3 * len(model.free):
         raise InputError(f"{loop.path}: {len(model.data)} rows are too few to fit {len(model.free)} inputs.")
     found = settle(Objective(model, None, None, False, False), np.zeros(len(model.free)))  # type: ignore[arg-type]
     return _result(model, found)
 
 
-def _problem(
-    case: PathLike | Case | LineContact, motion: Motion | None, steps: int | None
-) -> tuple[LineContact, FitSettings, Motion, int]:
-    """Return contact, settings of the fit, motion and steps."""
+def _problem(case: PathLike | Case | LineContact, given: dict[str, Any]) -> tuple[LineContact, FitSettings, dict[str, Any]]:
+    """Return contact, settings of the fit, and arguments of the stroke."""
     settings = None
+    arguments: dict[str, Any] = {"steps": STEPS}
     if not isinstance(case, LineContact):
         known = case if isinstance(case, Case) else load_case(case)
         case, settings = known.contact, known.fit
-        if known.stroke is not None:
-            motion = known.stroke.motion if motion is None else motion
-            steps = known.stroke.steps if steps is None else steps
+        arguments |= {} if known.stroke is None else known.stroke.arguments
     if not isinstance(case, LineContact):
         raise InputError(f"contact = {show(case)}; loops are fitted with a LineContact, as strokes are solved of one.")
-    if motion is None:
+    arguments |= {name: value for name, value in given.items() if value is not None}
+    if "motion" not in arguments:
         raise InputError("the motion is missing; give a table [stroke] in the case, or motion=sb.motions.Sine(...).")
+    motion = arguments["motion"]
     if not motion.repeats:
         raise InputError(f"motion = {show(motion)} does not repeat; a loop is one of a motion to and fro.")
-    return case, FitSettings.of(case) if settings is None else settings, motion, STEPS if steps is None else steps
+    return case, FitSettings.of(case) if settings is None else settings, arguments
 
 
 class _LoopModel:
@@ -221,13 +223,13 @@ class _LoopModel:
     def __init__(
         self,
         contact: LineContact,
-        motion: Motion,
-        steps: int,
+        arguments: dict[str, Any],
         free: tuple[FreeInput, ...],
         loop: Loop,
         on_step: Callable[[int], object] | None,
     ) -> None:
-        self.contact, self.motion, self.steps, self.free, self.on_step = contact, motion, steps, free, on_step
+        self.contact, self.arguments, self.free, self.on_step = contact, arguments, free, on_step
+        self.motion, self.steps = arguments["motion"], arguments["steps"]
         self.rubs = np.array([each.name == contact.friction_of_asperities.size for each in free])
         self.strokes = 0
         self._known: dict[bytes, tuple[Array, Array, Array, Array]] = {}
@@ -263,7 +265,7 @@ class _LoopModel:
         moved = {
             name: values[name] * math.exp(t) for free, t in zip(self.free, theta.tolist(), strict=True) for name in free.names
         }
-        found = stroke(self.contact.replace(**moved), self.motion, steps=steps or self.steps)
+        found = stroke(self.contact.replace(**moved), **self.arguments | {"steps": steps or self.steps})
         self.strokes += 1
         if self.on_step is not None:
             self.on_step(self.strokes)

@@ -17,7 +17,11 @@ from stribeck.quantities.units import InputError
 MOTIONS = laws_of("stribeck.motions", Motion)  # Those that a case may name
 
 # Keys beside those of the motion; that both go together is seen when the stroke is solved.
-SOLVING: Keys = {"cycles": Key(whole(1, 100_000)), "steps": Key(whole(1, 100_000))}
+SOLVING: Keys = {
+    "cycles": Key(whole(1, 100_000)),
+    "steps": Key(whole(1, 100_000)),
+    "inlet": Key(one_of("flooded", "own-wake")),
+}
 
 KEYS: Keys = {
     "motion": AS_GIVEN,
@@ -33,6 +37,7 @@ class StrokeSettings:
     motion: Motion  # Sliding speed over time
     cycles: int | None = None  # Times that it is done; None is the default of :func:`stribeck.stroke`
     steps: int | None = None  # Steps of a cycle; None is the default of :func:`stribeck.stroke`
+    inlet: str | None = None  # What is before the contact; None is the default of :func:`stribeck.stroke`
 
     @property
     def arguments(self) -> dict[str, Any]:

@@ -31,6 +31,7 @@ def stroke_command(
     output: Annotated[list[Path] | None, Parameter(alias="-o")] = None,
     plot: Path | None = None,
     cavitation: str | None = None,
+    inlet: str | None = None,
     no_notes: bool = False,
     verbose: Verbose = False,
     json: bool = False,
@@ -44,6 +45,8 @@ def stroke_command(
 
     --cavitation exit ends the film where it would suck, --cavitation none takes it as full; without it the case says which.
 
+    --inlet own-wake lets the contact run into the film that it has left, --inlet flooded gives it liquid enough.
+
     Ctrl-C ends the work; nothing is written then.
     """
     loaded = sb.load_case(case)
@@ -55,7 +58,7 @@ def stroke_command(
     outputs = output or []
     check_outputs(force, plot, data=outputs)
     arguments: dict[str, Any] = {"contact": loaded.contact} | loaded.stroke.arguments
-    arguments |= {} if cavitation is None else {"cavitation": cavitation}
+    arguments |= {name: word for name, word in (("cavitation", cavitation), ("inlet", inlet)) if word is not None}
     with interruptible() as progress:
         found = sb.stroke(on_step=progress, **arguments)
         from stribeck.strokes.beside_steady import beside_steady

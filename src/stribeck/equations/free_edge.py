@@ -6,8 +6,9 @@ gradient G of a film that goes on for ever, which is smooth across the edges a a
 .. math:: G(a) = G(b) = 0, \qquad p_f(x) = \lambda \int_a^x G \, dx, \qquad \int_a^b G \, dx = 0
 
 A change of an edge changes these integrals by less than itself, as G vanishes there: Newton's iteration needs no unknown
-for it.  The integrals up to the edges are those of the polynomials of the panels.  On the side of the inlet the film mostly
-goes on for ever, on that of the exit it does where the walls hardly move and the gap closes.
+for it.  The edge of a starved film is given: its pressure is the ambient one there but rises at once.  The integrals up to
+the edges are those of the polynomials of the panels.  On the side of the inlet the film mostly goes on for ever, on that of
+the exit it does where the walls hardly move and the gap closes.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.numerics.trace import Matrix
 from stribeck.quantities.lazy import cached_property
 
-__all__ = ["FilmBetween", "film_between"]
+__all__ = ["FilmBetween", "film_between", "integral_up_to"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +43,7 @@ class FilmBetween:
     @cached_property
     def _up_to(self) -> tuple[Array, Array]:
         """Weights of the integrals from minus infinity to the edges."""
-        left, right = (_integral_up_to(self.integral, edge) for edge in self.edges)
+        left, right = (integral_up_to(self.integral, edge) for edge in self.edges)
         return left, right
 
     @cached_property
@@ -75,8 +76,8 @@ class FilmBetween:
         return self.integral.after(operator * self.inside) + (operator @ columns) @ rows
 
 
-def film_between(integral: RunningIntegral, gap: Array, g: Array) -> FilmBetween:
-    """Return the film around the thinnest place that a nodal gap and its gradient G make."""
+def film_between(integral: RunningIntegral, gap: Array, g: Array, begins: tuple[int, float] | None = None) -> FilmBetween:
+    """Return the film around the thinnest place that a nodal gap and its gradient G make, one edge (0 or 1) perhaps given."""
     mesh, order = integral.mesh, integral.mesh.order
     x, total = mesh.nodes[:-order], float(mesh.weights @ g)
     pressure = integral(g)[:-order] + np.where(x > 0, total, 0.0)
@@ -90,10 +91,12 @@ def film_between(integral: RunningIntegral, gap: Array, g: Array) -> FilmBetween
             edges.append(infinity)
         else:
             edges.append(float(x[k] + (x[k + 1] - x[k]) * g[k] / (g[k] - g[k + 1])))
+    if begins is not None:
+        edges[begins[0]] = begins[1]
     return FilmBetween(integral, (edges[0], edges[1]))
 
 
-def _integral_up_to(integral: RunningIntegral, place: float) -> Array:
+def integral_up_to(integral: RunningIntegral, place: float) -> Array:
     """Return the weights of the integral from minus infinity to a place on the panels in x, or at infinity."""
     mesh, order = integral.mesh, integral.mesh.order
     if math.isinf(place):

@@ -9,7 +9,7 @@ With time in 2a/U_0 and s the speed over U_0, the film is that between walls at 
 All else is the residual of :mod:`stribeck.equations.line`, m_0 in the place of the flux gap.  At the end of a step the rate of
 :math:`\rho h` is ``rate * held - before``, with what the formula of the step takes from earlier states in ``before``.
 
-A film that ``ends`` lies between the edges of :mod:`stribeck.equations.free_edge`.
+A film that ``ends`` lies between the edges of :mod:`stribeck.equations.free_edge`; of a starved one, one of them is given.
 """
 
 from __future__ import annotations
@@ -20,15 +20,16 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.equations.free_edge import FilmBetween, film_between
+from stribeck.equations.free_edge import FilmBetween, film_between, integral_up_to
 from stribeck.equations.line import Coupled, Equations, Fields
 from stribeck.fluids.fluid import Film
 from stribeck.numerics.newton import LU, Inverse
 from stribeck.numerics.panels import Mesh, reference
+from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.numerics.trace import Matrix, Operator, act, value_of
 from stribeck.quantities.lazy import cached_property
 
-__all__ = ["Unsteady", "swallowed"]
+__all__ = ["Unsteady", "swallowed", "swallowed_up_to"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +41,7 @@ class Unsteady(Equations):
     before: Array | float = 0.0  # What earlier states leave of it
     volume: Matrix | None = None  # That of swallowed
     ends: bool = False  # Whether the film ends where its pressure would fall below the ambient one
+    begins: tuple[int, float] | None = None  # Of a starved film, the side of its inlet, 0 or 1, and where it begins [a]
 
     @cached_property
     def film(self) -> Film:
@@ -48,9 +50,13 @@ class Unsteady(Equations):
 
     def carried(self, u: Fields) -> Any:
         """Return m at the nodes."""
-        if self.volume is None or self.rate == 0.0:
+        return u.flux_gap if self.volume is None else self.carried_at(self.volume, u)
+
+    def carried_at(self, swallowed: Matrix, u: Fields) -> Any:
+        """Return m where an operator integrates up to."""
+        if self.rate == 0.0:
             return u.flux_gap
-        return u.flux_gap - act(self.volume, self.rate * self.film.held(u.gap, u.pressure) - self.before)
+        return u.flux_gap - act(swallowed, self.rate * self.film.held(u.gap, u.pressure) - self.before)
 
     def gradient(self, film: Film, u: Fields, by: str | None = None) -> Any:
         """Return the gradient of the pressure over the speed group at the nodes, as if the film went on for ever."""
@@ -58,7 +64,9 @@ class Unsteady(Equations):
 
     def between(self, u: Fields, g: Any) -> FilmBetween | None:
         """Return the film between its edges; None of one that goes on for ever."""
-        return film_between(self.operators.integral, value_of(u.gap), value_of(g)) if self.ends else None
+        if not self.ends:
+            return None
+        return film_between(self.operators.integral, value_of(u.gap), value_of(g), self.begins)
 
     def integral_to_end(self, u: Fields, g: Any) -> tuple[Operator, Operator]:
         """Return the operators from the gradient to the pressure, and to its whole integral, over the film."""
@@ -68,6 +76,11 @@ class Unsteady(Equations):
     def inverse(self, y: Array) -> Inverse:
         """Return the inverse of the Jacobian in units of the unknowns, by LU factors."""
         return Coupled(self, y) if self.film.uses_pressure else LU.of(self.jacobian(y, self.units(y)), overwrite=True)
+
+
+def swallowed_up_to(integral: RunningIntegral, place: float) -> Matrix:
+    """Return the operator from nodal rates of the gap to their integral from zero to a place on the panels in x."""
+    return Matrix((integral_up_to(integral, place) - integral_up_to(integral, 0.0))[None])
 
 
 def swallowed(mesh: Mesh) -> Matrix:

@@ -7,9 +7,10 @@ with the step :math:`\tau` and r its ratio to the step before (BDF2); the first 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -23,13 +24,28 @@ from stribeck.equations.line import LOAD
 from stribeck.equations.operators import Operators
 from stribeck.equations.real_area import area_by_pressure
 from stribeck.equations.state import State, unknowns_of
-from stribeck.equations.unsteady import Unsteady, swallowed
-from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
-from stribeck.numerics.settings import COARSE_STEP, HALF_DIGITS, MAX_REFINEMENTS, MAX_STEPS, NEGLIGIBLE, SHARE, STEP_GROWTH
+from stribeck.equations.unsteady import Unsteady, swallowed, swallowed_up_to
+from stribeck.numerics.newton import Inverse, Root, StepControl, root_between, root_find
+from stribeck.numerics.settings import (
+    COARSE_STEP,
+    HALF_DIGITS,
+    MAX_REFINEMENTS,
+    MAX_STEPS,
+    NEGLIGIBLE,
+    SHARE,
+    STEP_GROWTH,
+)
 from stribeck.numerics.trace import Matrix
 from stribeck.quantities.lazy import cached_property
+from stribeck.strokes.wake import Wake
 
-__all__ = ["March", "StepLost"]
+__all__ = ["March", "Moving", "StepLost"]
+
+Begins: TypeAlias = tuple[int, float] | None
+"""Of a starved film, the side of its inlet and where it begins."""
+
+Moving: TypeAlias = Callable[[float], tuple[float, float]]
+"""Time -> the speed over U_0, and the position of the moving surface [a]."""
 
 
 class StepLost(Exception):  # noqa: N818
@@ -39,6 +55,17 @@ class StepLost(Exception):  # noqa: N818
         self.time = time
 
 
+class Film(NamedTuple):
+    """A state at the end of a step."""
+
+    equations: Unsteady
+    root: Root
+    flows: list[float]  # Flux at both edges of the dry contact
+
+
+Solve: TypeAlias = Callable[[Begins, Array, Inverse | None], Film | None]
+
+
 class Past(NamedTuple):
     """A state on the way, the equations that it fulfils, and what a step from it takes of the state before."""
 
@@ -46,15 +73,16 @@ class Past(NamedTuple):
     y: Array
     equations: Unsteady
     inverse: Inverse | None
-    step: float = 0.0  # The step that led here; zero for none
-    y_before: Array | None = None
-    held_before: Array | None = None
+    flows: list[float]  # Flux at both edges of the dry contact
+    wakes: tuple[Wake, ...]  # Left and right of the contact; none where the inlet is always flooded
+    step: float  # The step that led here; infinite for none
+    y_before: Array
+    held_before: Array
 
     @property
     def held(self) -> Array:
         """The mass across the film at the nodes."""
-        u = self.equations.fields(self.y)
-        return np.asarray(self.equations.film.held(u.gap, u.pressure))
+        return held(self.equations, self.y)
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +93,7 @@ class March:
     groups: Groups  # At the speed U_0
     ends: bool  # Whether the film ends where its pressure would fall below the ambient one
     by_area: bool  # Whether asperities rub by their real area, not by their load
+    own_wake: bool  # Whether the inlet has what the contact has left
 
     @cached_property
     def law(self) -> ContactLaw:
@@ -72,25 +101,39 @@ class March:
         return contact_law(self.groups)
 
     @cached_property
+    def to_edges(self) -> tuple[Matrix, Matrix]:
+        """The integrals of the rate of the mass up to the edges of the dry contact."""
+        left, right = (swallowed_up_to(self.operators.integral, edge) for edge in (-1.0, 1.0))
+        return left, right
+
+    @cached_property
     def volume(self) -> Matrix:
         """The integral of the rate of the mass."""
         return swallowed(self.operators.mesh)
 
-    def over(self, guess: State, times: Array, share: Callable[[float], float], on_step: Callable[[int], None]) -> Array:
+    def over(self, guess: State, times: Array, moving: Moving, on_step: Callable[[int], None]) -> Array:
         """Return a row of :meth:`numbers` for each instant, the first one of the steady state near a guess."""
-        past = self._start(guess, float(times[0]), float(share(times[0])))
+        past = self._start(guess, float(times[0]), *moving(times[0]))
         rows = [self.numbers(past)]
         for k, time in enumerate(times[1:]):
-            past = self._reach(past, float(time), share, MAX_REFINEMENTS)
+            past = self._reach(past, float(time), moving, MAX_REFINEMENTS)
             rows.append(self.numbers(past))
             on_step(k + 1)
         return np.array(rows)
 
-    def equations(self, share: float, scale: float = 1.0, rate: float = 0.0, before: Array | float = 0.0) -> Unsteady:
+    def equations(
+        self,
+        share: float,
+        scale: float,
+        rate: float = 0.0,
+        before: Array | float = 0.0,
+        begins: Begins = None,
+    ) -> Unsteady:
         """Return the equations at an instant; the rows of the gradient have the factor ``scale``."""
-        return Unsteady(self.operators, float(self.groups.speed), self.law, scale, share, rate, before, self.volume, self.ends)
+        speed = float(self.groups.speed)
+        return Unsteady(self.operators, speed, self.law, scale, share, rate, before, self.volume, self.ends, begins)
 
-    def _start(self, guess: State, time: float, share: float) -> Past:
+    def _start(self, guess: State, time: float, share: float, place: float) -> Past:
         """Return the steady state at a share of the speed, by Newton's iteration from a state on another mesh."""
         equations = self.equations(share, guess.flux_gap**2)
         y, at = unknowns_of(equations, guess), equations.layout
@@ -102,7 +145,18 @@ class March:
         root = root_find(equations, y, self._control(equations))
         if not self._arrived(root):
             raise StepLost(time)
-        return Past(time, root.x, equations, root.inverse)
+        wakes = (Wake.at(1.0, place), Wake.at(-1.0, place)) if self.own_wake else ()
+        return Past(
+            time,
+            root.x,
+            equations,
+            root.inverse,
+            self._flows(equations, root.x),
+            wakes,
+            math.inf,
+            root.x,
+            held(equations, root.x),
+        )
 
     def _control(self, equations: Unsteady) -> StepControl:
         return StepControl(HALF_DIGITS, MAX_STEPS, SHARE, monotone=is_thinning(equations.film))
@@ -111,48 +165,102 @@ class March:
         """Return whether an iteration left an error that does not count."""
         return root.outcome.ok or root.last_step < NEGLIGIBLE * COARSE_STEP
 
-    def _reach(self, past: Past, time: float, share: Callable[[float], float], halvings: int) -> Past:
+    def _reach(self, past: Past, time: float, moving: Moving, halvings: int) -> Past:
         """Return the state at an instant; a step that fails is halved."""
-        found = self._step(past, time, share)
+        found = self._step(past, time, moving)
         if found is not None:
             return found
         if halvings == 0:
             raise StepLost(past.time)
-        middle = self._reach(past, 0.5 * (past.time + time), share, halvings - 1)
-        return self._reach(middle, time, share, halvings - 1)
+        middle = self._reach(past, 0.5 * (past.time + time), moving, halvings - 1)
+        return self._reach(middle, time, moving, halvings - 1)
 
-    def _step(self, past: Past, time: float, share: Callable[[float], float]) -> Past | None:
-        step, at = time - past.time, past.equations.layout.gap
-        gap, held, start = past.y[at], past.held, past.y
-        if past.y_before is None or past.held_before is None:
-            rate, before = 1 / step, held / step
-        else:
-            r = step / past.step
-            rate = (1 + 2 * r) / (1 + r) / step
-            before = ((1 + r) * held - r * r / (1 + r) * past.held_before) / step
-            start = past.y + r * (past.y - past.y_before)
-            start[at] = gap * np.clip(gap / past.y_before[at], 1 / STEP_GROWTH, STEP_GROWTH) ** r
-        equations = self.equations(float(share(time)), float(gap.min()) ** 2, rate, before)
-        # A step with a kept inverse is many times cheaper than a new inverse.
-        root = root_find(equations, start, self._control(equations), past.inverse)
-        return Past(time, root.x, equations, root.inverse, step, past.y, held) if self._arrived(root) else None
+    def _step(self, past: Past, time: float, moving: Moving) -> Past | None:
+        step, at, (share, place) = time - past.time, past.equations.layout.gap, moving(time)
+        r = step / past.step
+        rate = (1 + 2 * r) / (1 + r) / step
+
+        def before(now: Any, earlier: Any) -> Any:
+            return ((1 + r) * now - r * r / (1 + r) * earlier) / step
+
+        gap, mass = past.y[at], past.held
+        start = past.y + r * (past.y - past.y_before)
+        start[at] = gap * np.clip(gap / past.y_before[at], 1 / STEP_GROWTH, STEP_GROWTH) ** r
+
+        def film(begins: Begins, guess: Array, kept: Inverse | None) -> Film | None:
+            equations = self.equations(share, float(gap.min()) ** 2, rate, before(mass, past.held_before), begins)
+            # A step with a kept inverse is many times cheaper than a new inverse.
+            root = root_find(equations, guess, self._control(equations), kept)
+            return Film(equations, root, self._flows(equations, root.x)) if self._arrived(root) else None
+
+        found = film(None, start, past.inverse)
+        for side, wake in enumerate(past.wakes):
+            if found is not None and share and wake.is_reached(place):
+                arriving = (wake.held - wake.lies_beyond(place)) / step
+                if wake.way * found.flows[side] > arriving:
+                    found = self._starved(film, found, side, arriving / abs(share))
+        if found is None:
+            return None
+        wakes = tuple(
+            wake.moved(place, step * wake.way * (flow if wake.is_reached(place) else 0.5 * (flow + earlier)))
+            for wake, flow, earlier in zip(past.wakes, found.flows, past.flows, strict=False)
+        )
+        return Past(time, found.root.x, found.equations, found.root.inverse, found.flows, wakes, step, past.y, mass)
+
+    def _flows(self, equations: Unsteady, y: Array) -> list[float]:
+        """Return the flux at both edges of the dry contact."""
+        u = equations.fields(y)
+        return [equations.carried_at(edge, u).item() for edge in self.to_edges]
+
+    def _starved(self, film: Solve, flooded: Film, side: int, arriving: float) -> Film | None:
+        """Return the film that begins where it draws in no more than what arrives, as a gap that it would fill."""
+        order = self.operators.mesh.order
+        x, gap = self.operators.mesh.nodes[:-order], flooded.root.x[flooded.equations.layout.gap][:-order]
+        middle = int(np.argmin(gap))
+        outwards = slice(middle, None) if side else slice(middle, None, -1)
+        widest = np.maximum.accumulate(gap[outwards])
+        found, flux = [flooded], flooded.equations.share * arriving
+
+        def excess(part: float) -> float:
+            """Return what a film draws in beyond what arrives, where it begins at a gap of the liquid over a part."""
+            # A gap that the liquid just fills draws in nothing; in one that is infinite the film is flooded.
+            if part == 1.0:
+                return -flux
+            if part:
+                place = float(np.interp(arriving / part, widest, x[outwards]))
+                each = film((side, place), found[-1].root.x, found[-1].root.inverse)
+                if each is None:
+                    return -flux
+                found.append(each)
+            return found[-1].flows[side] - flux
+
+        root_between(excess, 0.0, 1.0, COARSE_STEP)
+        return found[-1] if len(found) > 1 else None
 
     def numbers(self, past: Past) -> Array:
-        """Return the share of asperities, by what they rub, viscous friction for beta = 1, central and minimum gap."""
+        """Return share of asperities, by what they rub, viscous friction for beta = 1, both gaps, flux at both edges."""
         equations, mesh = past.equations, self.operators.mesh
         u = equations.fields(past.y)
         g = equations.gradient(equations.film, u)
         between, share = equations.between(u, g), equations.share
         sheared = equations.film.tractions(u.gap, u.pressure, equations.carried(u))[0]
         if between is not None and share:
-            # Behind an edge the liquid that has passed it goes on with the speed of the walls, half of it.
-            for edge, outside in zip(
-                between.edges, (mesh.nodes < between.edges[0], mesh.nodes > between.edges[1]), strict=True
-            ):
-                passed = share * mesh.interpolate(u.gap, np.array([edge]))
-                sheared = np.where(outside, equations.film.cavity_traction(u.gap, u.pressure, passed), sheared)
+            # Behind an edge the liquid that has passed it goes on with the speed of the walls, half of it; before that of a
+            # starved film there is what arrives.
+            passed = share * mesh.interpolate(u.gap, np.array(between.edges))
+            if equations.begins is not None:
+                passed[equations.begins[0]] = past.flows[equations.begins[0]]
+            for flux, outside in zip(passed, (mesh.nodes < between.edges[0], mesh.nodes > between.edges[1]), strict=True):
+                sheared = np.where(outside, equations.film.cavity_traction(u.gap, u.pressure, flux), sheared)
         contact = equations.contact(u.gap)
         asperities = mesh.weights @ contact / LOAD
         rubbing = area_by_pressure(self.groups, mesh, 1.0, contact) if self.by_area else asperities
         viscous = friction_scale(self.groups.load, self.groups.speed) * (mesh.weights @ sheared)
-        return np.array([asperities, rubbing, viscous, gap_beside(mesh, u.gap, 0.0)[0], minimum_gap(mesh, u.gap)[1]])
+        gaps = gap_beside(mesh, u.gap, 0.0)[0], minimum_gap(mesh, u.gap)[1]
+        return np.array([asperities, rubbing, viscous, *gaps, *past.flows])
+
+
+def held(equations: Unsteady, y: Array) -> Array:
+    """Return the mass across the film at the nodes."""
+    u = equations.fields(y)
+    return np.asarray(equations.film.held(u.gap, u.pressure))

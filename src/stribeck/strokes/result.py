@@ -24,6 +24,8 @@ COLUMNS = {
     "contact_load_share": ("1", "share of the load on asperities"),
     "central_gap": ("m", "gap at the centre"),
     "minimum_gap": ("m", "minimum gap"),
+    "left_flow": ("m2/s", "liquid that passes the left edge of the dry contact, to the right"),
+    "right_flow": ("m2/s", "liquid that passes the right edge of the dry contact, to the right"),
 }
 """Unit and meaning of the numbers over time."""
 
@@ -56,8 +58,11 @@ class Stroke(Exported, Told, ByValue):
         Share of the load on asperities [-].
     central_gap, minimum_gap : ndarray, shape (n,)
         Gap at the centre, and the smallest [m].
+    left_flow, right_flow : ndarray, shape (n,)
+        Liquid that passes the edges of the dry contact per length and time, to the right [m2/s]; on the way out it comes from
+        the left.
     errors : dict
-        Estimated absolute error of each of these six, shape (n,), by name, in its unit.
+        Estimated absolute error of each of these eight, shape (n,), by name, in its unit.
     work : float
         Work of friction per length of the contact in the last cycle, or in the whole motion [J/m].
     work_error : float
@@ -81,6 +86,8 @@ class Stroke(Exported, Told, ByValue):
     contact_load_share: Array
     central_gap: Array
     minimum_gap: Array
+    left_flow: Array
+    right_flow: Array
     errors: dict[str, Array]
     work: float
     work_error: float

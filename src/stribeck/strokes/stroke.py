@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from stribeck.numerics.settings import COARSE_ORDER, COARSE_RTOL, LEAST_DEGREE, 
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.units import InputError, checked_callback, show
+from stribeck.quantities.units import InputError, checked_callback, checked_word, show
 from stribeck.solids.solid import lengths_of
 from stribeck.solver.solve import solved_point
 from stribeck.solver.solve_error import SolveError, describe
@@ -30,6 +30,10 @@ from stribeck.strokes.meshes import shared_mesh
 from stribeck.strokes.result import Stroke
 
 __all__ = ["stroke"]
+
+Inlet: TypeAlias = Literal["flooded", "own-wake"]
+
+TOO_THIN = " The wake may be thinner than the gap that asperities hold open, which no film spans: give inlet = 'flooded'."
 
 MIN_STEPS, MAX_STEPS = 16, 100_000  # Steps of a cycle that may be asked for
 
@@ -41,6 +45,7 @@ def stroke(
     *,
     cycles: int | None = None,
     steps: int = 400,
+    inlet: Inlet = "flooded",
     on_step: Callable[[int, int], None] | None = None,
     **parts: Any,
 ) -> Stroke:
@@ -65,6 +70,9 @@ def stroke(
         Times that a motion which repeats is done, 2 by default: the first one still knows how it began.
     steps : int
         Steps of a cycle, even, from 16 to 100000.
+    inlet : {"flooded", "own-wake"}
+        Whether there is always enough liquid before the contact, or after a reversal what it has left behind itself; the
+        latter needs a film that ends.
     on_step : callable, optional
         ``on_step(done, steps)`` is called after each step, for progress.
     **parts
@@ -85,7 +93,11 @@ def stroke(
 
     Notes
     -----
-    The inlet is always flooded, after a reversal too.  Errors are those of time steps and mesh: twice the largest difference
+    With ``inlet="own-wake"`` the liquid that passes the edges of the dry contact is counted.  What has passed the trailing one
+    stays on the surface where it passed, until the contact comes back; of that no more is drawn in, and what is not is pushed
+    ahead.  A starved film begins where it draws in what arrives.  Surface that the contact has not passed is flooded.
+
+    Errors are those of time steps and mesh: twice the largest difference
     nearby from a march with half of the steps and fewer nodes; they cover the difference from one with four times the
     steps at 95 % of instants (``tests/test_strokes.py``).  A slow stroke tends to the row of steady states as the inverse
     of its length.
@@ -105,6 +117,7 @@ def stroke(
     """
     contact = _checked_contact(with_parts(contact, **parts) if parts else contact)
     checked_callback("on_step", on_step)
+    checked_word("inlet", inlet, get_args(Inlet))
     motion = checked_motion(motion)
     count = _checked_cycles(motion, cycles)
     if isinstance(steps, bool) or not isinstance(steps, int) or steps % 2 or not MIN_STEPS <= steps <= MAX_STEPS:
@@ -119,18 +132,22 @@ def stroke(
         )
     contact = contact.replace(speed=largest)
     groups = contact.groups
-    _check_model(groups)
+    _check_model(groups, inlet)
     time = np.concatenate([[0.0], *(one[1:] + k * motion.duration for k in range(count))])
     unit = 2 * contact.hertz.half_width / largest
     within = np.concatenate([one, *([one[1:]] * (count - 1))])
     speed = np.asarray(motion.speed(within), dtype=float)
     path = np.asarray(motion.position(within), dtype=float)
 
-    def share(t: float) -> float:
+    advance = float(np.ptp(motion.position(np.array([0.0, motion.duration]))))
+
+    def moving(t: float) -> tuple[float, float]:
         # The end of a cycle is told from the start of the next, which rounding may take for one another.
         inside = t * unit
-        inside -= motion.duration * min(np.floor(inside / motion.duration), count - 1)
-        return float(motion.speed(np.array([min(max(inside, 0.0), motion.duration)]))[0]) / largest
+        passed = min(np.floor(inside / motion.duration), count - 1)
+        at = np.clip(np.array([inside - motion.duration * passed]), 0.0, motion.duration)
+        place = motion.position(at)[0] + passed * advance
+        return float(motion.speed(at)[0] / largest), float(place / contact.hertz.half_width)
 
     total = len(time) - 1 + (len(time) - 1) // 2
     states = _states(groups, first / largest)
@@ -140,7 +157,7 @@ def stroke(
     done = 0
     for order, instants in ((COARSE_ORDER, time), (LEAST_DEGREE + 1, time[::2])):
         operators = Operators(shared_mesh(states, order), model)
-        march = March(operators, groups, ends, needs_area(contact.friction_of_asperities))
+        march = March(operators, groups, ends, needs_area(contact.friction_of_asperities), inlet == "own-wake")
         before = done
 
         def note(k: int, before: int = before) -> None:
@@ -148,16 +165,16 @@ def stroke(
                 on_step(before + k, total)
 
         try:
-            marches.append(march.over(states[0], instants / unit, share, note))
+            marches.append(march.over(states[0], instants / unit, moving, note))
         except StepLost as lost:
             raise SolveError(
                 Outcome.STALLED,
                 None,
                 f"{describe(groups)}: the step from t = {lost.time * unit:.4g} s does not arrive, however short. Ask "
-                "for more steps, or for a motion whose speed does not jump.",
+                f"for more steps, or for a motion whose speed does not jump.{TOO_THIN if inlet == 'own-wake' else ''}",
             ) from None
         done += len(instants) - 1
-    return _result(contact, motion, count, time, speed, path, marches)
+    return _result(contact, motion, inlet, count, time, speed, path, marches)
 
 
 def _checked_contact(contact: Any) -> LineContact:
@@ -169,13 +186,17 @@ def _checked_contact(contact: Any) -> LineContact:
     return contact
 
 
-def _check_model(groups: Groups) -> None:
+def _check_model(groups: Groups, inlet: Inlet) -> None:
     """Refuse by name what is not solved in time."""
     model = groups.model
     if model.cavitation is Cavitation.REFORM:
         raise InputError(
             "cavitation = 'reform': strokes are solved of films that end at ambient pressure, cavitation = 'exit', or that "
             "never end, 'none': a cavity that closes again behind the contact would have an edge more."
+        )
+    if inlet == "own-wake" and model.cavitation is Cavitation.NONE:
+        raise InputError(
+            "inlet = 'own-wake' needs a film that ends, cavitation = 'exit': a full film has liquid everywhere, and no wake."
         )
     if model.film.slide != 1.0:
         raise InputError("slide_to_roll: strokes are solved in pure sliding, slide_to_roll = 2.")
@@ -211,12 +232,19 @@ def _states(groups: Groups, first: float) -> list[State]:
 
 
 def _result(
-    contact: LineContact, motion: Motion, cycles: int, time: Array, speed: Array, path: Array, marches: list[Array]
+    contact: LineContact,
+    motion: Motion,
+    inlet: Inlet,
+    cycles: int,
+    time: Array,
+    speed: Array,
+    path: Array,
+    marches: list[Array],
 ) -> Stroke:
     """Return two marches as a result in SI units: the first one, and its difference from the second."""
     scales = contact.hertz
     fine, coarse = (
-        _columns(rows, v, _rubbing(contact, v), contact.beta, scales.indentation)
+        _columns(rows, v, _rubbing(contact, v), contact.beta, scales.indentation, 0.5 * contact.speed * scales.indentation)
         for rows, v in zip(marches, (speed, speed[::2]), strict=True)
     )
     errors = {name: _error(fine[name], coarse[name]) for name in fine}
@@ -237,11 +265,11 @@ def _result(
         errors=errors,
         work=work,
         work_error=SAFETY * abs(work - coarse_work),
-        notes=_notes(contact),
+        notes=_notes(contact, inlet),
     )
 
 
-def _notes(contact: LineContact) -> tuple[str, ...]:
+def _notes(contact: LineContact, inlet: Inlet) -> tuple[str, ...]:
     """Return how the film ends and is fed, and how asperities rub where it is not known."""
     ends = contact.groups.model.cavitation is Cavitation.EXIT
     end = (
@@ -249,7 +277,8 @@ def _notes(contact: LineContact) -> tuple[str, ...]:
         if ends
         else "The film is full: it holds any suction"
     )
-    notes = [f"{end}; its inlet is flooded, not starved by its own wake after a reversal."]
+    fed = "has what the contact has left behind itself" if inlet == "own-wake" else "is flooded, after a reversal too"
+    notes = [f"{end}; its inlet {fed}."]
     slowest = contact.friction_of_asperities.known_speeds[0]
     if slowest > 0:
         notes.append(f"Slower than {format_si(slowest, 'speed')} the shear stress is the first one of its table.")
@@ -263,9 +292,9 @@ def _rubbing(contact: LineContact, speed: Array) -> Array:
     return friction.factors(contact, np.maximum(sliding, max(sliding[sliding > 0].min(), friction.known_speeds[0])))
 
 
-def _columns(rows: Array, speed: Array, rubbing: Array, beta: float, indentation: float) -> dict[str, Array]:
+def _columns(rows: Array, speed: Array, rubbing: Array, beta: float, indentation: float, flow: float) -> dict[str, Array]:
     """Return the numbers of a march by name, in SI units."""
-    share, amount, viscous, central, minimum = rows.T
+    share, amount, viscous, central, minimum, left, right = rows.T
     asperities, fluid = rubbing * np.sign(speed) * amount, beta * viscous
     return {
         "friction": asperities + fluid,
@@ -274,6 +303,8 @@ def _columns(rows: Array, speed: Array, rubbing: Array, beta: float, indentation
         "contact_load_share": share,
         "central_gap": central * indentation,
         "minimum_gap": minimum * indentation,
+        "left_flow": left * flow,
+        "right_flow": right * flow,
     }
 
 
