@@ -20,14 +20,14 @@ def case(tmp_path):
     return path
 
 
-def loop_of(path, contact, over="position [mm]", count=120):
+def loop_of(path, contact, over="position [mm]", count=120, seed=1, motion=MOTION):
     """Write the loop of a contact with noise; positions count from one end."""
-    found = sb.stroke(contact, MOTION, steps=48)
+    found = sb.stroke(contact, motion, steps=48)
     last = found.last_cycle
-    time = np.linspace(0, MOTION.duration, count + 1)[:-1]
+    time = np.linspace(0, motion.duration, count + 1)[:-1]
     friction = np.interp(time, found.time[last] - found.time[last][0], found.friction[last])
-    friction += NOISE * np.random.default_rng(1).normal(size=count)
-    x = time if over.startswith("time") else 10 + 1e3 * MOTION.position(time)
+    friction += NOISE * np.random.default_rng(seed).normal(size=count)
+    x = time if over.startswith("time") else 10 + 1e3 * motion.position(time)
     path.write_text(f"{over},friction\n" + "".join(f"{a:.7g},{b:.7g}\n" for a, b in zip(x, friction, strict=True)))
     return path
 
@@ -55,6 +55,23 @@ def test_boundary_friction_and_roughness_come_out_of_a_loop_over_time(capsys, ca
     for each, value in zip(found["inputs"], (0.5, 1.3 * contact.roughness), strict=True):
         assert each["interval_95"][0] < value < each["interval_95"][1]
         assert each["value"] == pytest.approx(value, rel=0.06)
+
+
+@pytest.mark.slow
+def test_intervals_of_loops_cover_the_truth(case, tmp_path):
+    """Of loops over position and time, of two speeds, and of a film that ends: at least five of six 95 % intervals."""
+    contact = sb.load_case(case).contact
+    inside = []
+    for seed, (over, speed, ends) in enumerate(
+        [("position [mm]", 0.3, "none"), ("time [s]", 0.2, "none"), ("position [mm]", 0.3, "exit")]
+    ):
+        start, motion = contact.replace(cavitation=ends), sb.motions.Sine(20e-3, 0.5 * speed)
+        truth = start.replace(boundary_friction=0.5, roughness=1.2 * contact.roughness)
+        path = loop_of(tmp_path / f"{seed}.csv", truth, over, seed=seed, motion=motion)
+        for each in sb.bench.fit_loop(path, start, motion, steps=24).inputs:
+            low, high = each.interval_95
+            inside.append(low < getattr(truth, each.name) < high < 2 * low)
+    assert sum(inside) >= 5, inside
 
 
 @pytest.mark.slow

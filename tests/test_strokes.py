@@ -89,9 +89,25 @@ def test_slow_strokes_tend_to_steady_states_as_the_inverse_of_their_length():
     assert np.allclose(away[0] / away[1], 2.0, atol=0.3)
 
 
+def test_time_steps_are_of_second_order():
+    ends = [sb.stroke(CONTACT, sb.motions.Ramp(SPEED, 0.2 * SPEED, 0.1), steps=n).friction[-1] for n in (32, 64, 128)]
+    assert math.log2((ends[0] - ends[1]) / (ends[1] - ends[2])) == pytest.approx(2.0, abs=0.3)
+
+
+def test_the_mesh_serves_the_fastest_and_the_slowest_of_a_motion():
+    """At a ten-thousandth of the largest speed friction and films are at last those of steady sliding."""
+    contact, slow = CONTACT.replace(roughness=0.03 * CONTACT.roughness), 1e-4 * SPEED
+    found = sb.stroke(contact, sb.motions.Table([0, 0.02, 1000.0], [SPEED, slow, slow]), steps=40)
+    state = sb.solve(contact.replace(speed=slow))
+    assert found.friction[-1] == pytest.approx(state.friction.total, rel=1e-4)
+    assert found.minimum_gap[-1] == pytest.approx(state.minimum_gap * contact.hertz.indentation, rel=1e-4)
+
+
+@pytest.mark.parametrize("inlet", ["flooded", "own-wake"])
 @pytest.mark.slow
-def test_the_stated_error_covers_that_of_four_times_the_steps():
-    coarse, fine = (sb.stroke(CONTACT, sine(20), cycles=1, steps=n) for n in (80, 320))
+def test_the_stated_error_covers_that_of_four_times_the_steps(inlet):
+    contact, cycles = (CONTACT, 1) if inlet == "flooded" else (CONTACT.replace(cavitation="exit"), 2)
+    coarse, fine = (sb.stroke(contact, sine(20), cycles=cycles, steps=n, inlet=inlet) for n in (80, 320))
     for name, error in coarse.errors.items():
         missed = np.abs(getattr(coarse, name) - getattr(fine, name)[::4]) > error + 1e-6 * np.abs(getattr(fine, name)).max()
         assert missed.mean() < 0.05, name

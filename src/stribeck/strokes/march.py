@@ -33,7 +33,6 @@ from stribeck.numerics.settings import (
     MAX_STEPS,
     NEGLIGIBLE,
     SHARE,
-    STEP_GROWTH,
 )
 from stribeck.numerics.trace import Matrix
 from stribeck.quantities.lazy import cached_property
@@ -185,7 +184,7 @@ class March:
 
         gap, mass = past.y[at], past.held
         start = past.y + r * (past.y - past.y_before)
-        start[at] = gap * np.clip(gap / past.y_before[at], 1 / STEP_GROWTH, STEP_GROWTH) ** r
+        start[at] = gap * (gap / past.y_before[at]) ** r
 
         def film(begins: Begins, guess: Array, kept: Inverse | None) -> Film | None:
             equations = self.equations(share, float(gap.min()) ** 2, rate, before(mass, past.held_before), begins)
