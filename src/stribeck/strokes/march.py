@@ -66,22 +66,14 @@ Solve: TypeAlias = Callable[[Begins, Array, Inverse | None], Film | None]
 
 
 class Past(NamedTuple):
-    """A state on the way, the equations that it fulfils, and what a step from it takes of the state before."""
+    """A state on the way, and what a step from it takes of the state before."""
 
     time: float
-    y: Array
-    equations: Unsteady
-    inverse: Inverse | None
-    flows: list[float]  # Flux at both edges of the dry contact
+    film: Film
     wakes: tuple[Wake, ...]  # Left and right of the contact; none where the inlet is always flooded
     step: float  # The step that led here; infinite for none
     y_before: Array
     held_before: Array
-
-    @property
-    def held(self) -> Array:
-        """The mass across the film at the nodes."""
-        return held(self.equations, self.y)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,10 +105,10 @@ class March:
     def over(self, guess: State, times: Array, moving: Moving, on_step: Callable[[int], None]) -> Array:
         """Return a row of :meth:`numbers` for each instant, the first one of the steady state near a guess."""
         past = self._start(guess, float(times[0]), *moving(times[0]))
-        rows = [self.numbers(past)]
+        rows = [self.numbers(past.film)]
         for k, time in enumerate(times[1:]):
             past = self._reach(past, float(time), moving, MAX_REFINEMENTS)
-            rows.append(self.numbers(past))
+            rows.append(self.numbers(past.film))
             on_step(k + 1)
         return np.array(rows)
 
@@ -145,17 +137,8 @@ class March:
         if not self._arrived(root):
             raise StepLost(time)
         wakes = (Wake.at(1.0, place), Wake.at(-1.0, place)) if self.own_wake else ()
-        return Past(
-            time,
-            root.x,
-            equations,
-            root.inverse,
-            self._flows(equations, root.x),
-            wakes,
-            math.inf,
-            root.x,
-            held(equations, root.x),
-        )
+        film = Film(equations, root, self._flows(equations, root.x))
+        return Past(time, film, wakes, math.inf, root.x, held(film))
 
     def _control(self, equations: Unsteady) -> StepControl:
         return StepControl(HALF_DIGITS, MAX_STEPS, SHARE, monotone=is_thinning(equations.film))
@@ -175,15 +158,15 @@ class March:
         return self._reach(middle, time, moving, halvings - 1)
 
     def _step(self, past: Past, time: float, moving: Moving) -> Past | None:
-        step, at, (share, place) = time - past.time, past.equations.layout.gap, moving(time)
+        last, step, (share, place) = past.film, time - past.time, moving(time)
         r = step / past.step
         rate = (1 + 2 * r) / (1 + r) / step
 
         def before(now: Any, earlier: Any) -> Any:
             return ((1 + r) * now - r * r / (1 + r) * earlier) / step
 
-        gap, mass = past.y[at], past.held
-        start = past.y + r * (past.y - past.y_before)
+        y, at, mass = last.root.x, last.equations.layout.gap, held(last)
+        gap, start = y[at], y + r * (y - past.y_before)
         start[at] = gap * (gap / past.y_before[at]) ** r
 
         def film(begins: Begins, guess: Array, kept: Inverse | None) -> Film | None:
@@ -192,7 +175,7 @@ class March:
             root = root_find(equations, guess, self._control(equations), kept)
             return Film(equations, root, self._flows(equations, root.x)) if self._arrived(root) else None
 
-        found = film(None, start, past.inverse)
+        found = film(None, start, last.root.inverse)
         for side, wake in enumerate(past.wakes):
             if found is not None and share and wake.is_reached(place):
                 arriving = (wake.held - wake.lies_beyond(place)) / step
@@ -202,9 +185,9 @@ class March:
             return None
         wakes = tuple(
             wake.moved(place, step * wake.way * (flow if wake.is_reached(place) else 0.5 * (flow + earlier)))
-            for wake, flow, earlier in zip(past.wakes, found.flows, past.flows, strict=False)
+            for wake, flow, earlier in zip(past.wakes, found.flows, last.flows, strict=False)
         )
-        return Past(time, found.root.x, found.equations, found.root.inverse, found.flows, wakes, step, past.y, mass)
+        return Past(time, found, wakes, step, y, mass)
 
     def _flows(self, equations: Unsteady, y: Array) -> list[float]:
         """Return the flux at both edges of the dry contact."""
@@ -236,10 +219,10 @@ class March:
         root_between(excess, 0.0, 1.0, COARSE_STEP)
         return found[-1] if len(found) > 1 else None
 
-    def numbers(self, past: Past) -> Array:
+    def numbers(self, film: Film) -> Array:
         """Return share of asperities, by what they rub, viscous friction for beta = 1, both gaps, flux at both edges."""
-        equations, mesh = past.equations, self.operators.mesh
-        u = equations.fields(past.y)
+        equations, mesh = film.equations, self.operators.mesh
+        u = equations.fields(film.root.x)
         g = equations.gradient(equations.film, u)
         between, share = equations.between(u, g), equations.share
         sheared = equations.film.tractions(u.gap, u.pressure, equations.carried(u))[0]
@@ -248,7 +231,7 @@ class March:
             # starved film there is what arrives.
             passed = share * mesh.interpolate(u.gap, np.array(between.edges))
             if equations.begins is not None:
-                passed[equations.begins[0]] = past.flows[equations.begins[0]]
+                passed[equations.begins[0]] = film.flows[equations.begins[0]]
             for flux, outside in zip(passed, (mesh.nodes < between.edges[0], mesh.nodes > between.edges[1]), strict=True):
                 sheared = np.where(outside, equations.film.cavity_traction(u.gap, u.pressure, flux), sheared)
         contact = equations.contact(u.gap)
@@ -256,10 +239,10 @@ class March:
         rubbing = area_by_pressure(self.groups, mesh, 1.0, contact) if self.by_area else asperities
         viscous = friction_scale(self.groups.load, self.groups.speed) * (mesh.weights @ sheared)
         gaps = gap_beside(mesh, u.gap, 0.0)[0], minimum_gap(mesh, u.gap)[1]
-        return np.array([asperities, rubbing, viscous, *gaps, *past.flows])
+        return np.array([asperities, rubbing, viscous, *gaps, *film.flows])
 
 
-def held(equations: Unsteady, y: Array) -> Array:
+def held(film: Film) -> Array:
     """Return the mass across the film at the nodes."""
-    u = equations.fields(y)
-    return np.asarray(equations.film.held(u.gap, u.pressure))
+    u = film.equations.fields(film.root.x)
+    return np.asarray(film.equations.film.held(u.gap, u.pressure))

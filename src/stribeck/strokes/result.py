@@ -102,7 +102,11 @@ class Stroke(Exported, Told, ByValue):
     @property
     def largest_contact_load_share(self) -> float:
         """Largest share of the load on asperities in the last cycle [-]."""
-        return float(self.contact_load_share[self.last_cycle].max())
+        return float(self.contact_load_share[self._where_largest])
+
+    @property
+    def _where_largest(self) -> int:
+        return int(np.argmax(self.contact_load_share[self.last_cycle])) + int(self.last_cycle.start)
 
     @property
     def half_widths(self) -> float:
@@ -117,12 +121,10 @@ class Stroke(Exported, Told, ByValue):
         dict
             By the names of the attributes, with ``..._error`` behind those that have one.
         """
-        last = self.last_cycle
-        largest = int(np.argmax(self.contact_load_share[last])) + last.start
         found: dict[str, Any] = {name: getattr(self, name) for name in ("cycles", "half_width", "half_widths")}
         found |= {
             "largest_contact_load_share": self.largest_contact_load_share,
-            "largest_contact_load_share_error": float(self.errors["contact_load_share"][largest]),
+            "largest_contact_load_share_error": float(self.errors["contact_load_share"][self._where_largest]),
             "work": self.work,
             "work_error": self.work_error,
         }
@@ -132,8 +134,7 @@ class Stroke(Exported, Told, ByValue):
         return found | {"notes": list(self.notes)}
 
     def _card(self) -> Card:
-        last = self.last_cycle
-        largest = int(np.argmax(self.contact_load_share[last])) + last.start
+        last, largest = self.last_cycle, self._where_largest
         peak = int(np.argmax(np.abs(self.friction[last]))) + last.start
         thinnest = int(np.argmin(self.minimum_gap[last])) + last.start
         rows = [
