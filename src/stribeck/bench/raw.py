@@ -13,7 +13,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import is_named, number_of, rows_listed
+from stribeck.files.cells import is_named, rows_listed
 from stribeck.files.text_table import TextTable, read_table
 from stribeck.fits.table.columns import columns_of, has_column, known_name, with_errors_named
 from stribeck.fits.table.correlated import FEWEST, errors_of_means
@@ -98,8 +98,8 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
         raise InputError(f"{table.path}: no row holds both speed and friction; check the columns.")
     notes = [*table.notes, *time_note]
     if zero is not None:
-        sizes = _floats(load or [])
-        friction = friction - zero.at(np.array(table.numbers, float)) / np.abs(sizes)
+        assert load is not None
+        friction = friction - zero.at(np.array(table.numbers, float)) / np.abs(load)
         notes.append(zero.said)
     if not there.all():
         missing = [number for number, kept in zip(table.numbers, there, strict=True) if not kept]
@@ -124,8 +124,8 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
         speed=speed[kept],
         friction=friction[kept],
         stated=None if stated is None else stated[kept],
-        load=None if load is None else np.abs(_floats(load))[kept],
-        temperature=None if warm is None else _floats(warm[0])[kept],
+        load=None if load is None else np.abs(load)[kept],
+        temperature=None if warm is None else warm[0][kept],
         curve=curve[kept],
         curves=curves,
         steps=tuple(labels[i] for i in kept) if labels else (),
@@ -160,7 +160,7 @@ def _uses_coefficient(table: TextTable, settings: FitSettings) -> bool:
     values = Values(table, settings)
     given = _array(values, columns["friction"][0], "friction")
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = np.abs(_floats(force) / _floats(load))
+        found = np.abs(force / load)
         apart = np.abs(found / np.abs(given) - 1)
     apart = apart[np.isfinite(apart)]
     return not apart.size or float(np.median(apart)) > SAME_FRICTION
@@ -185,7 +185,7 @@ def _zero_of_force(table: TextTable, settings: FitSettings) -> tuple[TextTable, 
     load = measured(table, "normal_force", settings)
     if load is None:
         return table, None
-    sizes = np.abs(_floats(load))
+    sizes = np.abs(load)
     loaded = sizes[sizes > UNLOADED * np.nanmax(sizes, initial=0.0)]
     apart = sizes <= UNLOADED * (np.median(loaded) if loaded.size else 0.0)
     if not apart.any() or apart.all():
@@ -193,13 +193,13 @@ def _zero_of_force(table: TextTable, settings: FitSettings) -> tuple[TextTable, 
     force = measured(table, "friction_force", settings)
     numbers = np.array(table.numbers, float)
     shorter = _only(table, ~apart)
-    stretches = [each for each in _stretches(apart) if len(each) >= FEWEST] if force is not None else []
-    stretches = [each[np.isfinite(_floats(force or [])[each])] for each in stretches]
+    force = np.full(len(sizes), np.nan) if force is None else force
+    stretches = [each[np.isfinite(force[each])] for each in _stretches(apart)]
     stretches = [each for each in stretches if len(each) >= FEWEST]
     if not stretches:
         note = f"{int(apart.sum())} rows without load left out."
         return replace(shorter, notes=(*shorter.notes, note)), None
-    series = [_floats(force or [])[each] for each in stretches]
+    series = [force[each] for each in stretches]
     errors = errors_of_means([each - each.mean() for each in series])
     means = np.array([float(each.mean()) for each in series])
     texts = " and ".join(f"{format_si(m, 'force')} ± {format_error(e, 'force')}" for m, e in zip(means, errors, strict=True))
@@ -234,16 +234,14 @@ def _time(table: TextTable, step: int | None) -> tuple[Array, bool, list[str]]:
         bare = not unit and re.search("time|zeit|date|clock|datum", name, re.IGNORECASE)
         if not is_named(name, TIME) or not (bare or has_dimension(unit or "-", "time")):
             continue
-        decimal = "," if table.decimal_comma([name]) else "."
-        read = [number_of(cell, decimal) for cell in table.column(name)]
-        stamps = None if any(read) else _stamps(table.column(name))
+        read = table.values(name)
+        there = bool(np.isfinite(read).any())
+        stamps = None if there else _stamps(table.column(name))
         if stamps is not None:
             return _going_on(table, name, stamps, step), True, [f"{show(name)} was read as the time of day."]
-        if not any(read):
+        if not there:
             continue
-        time = np.array([np.nan if each is None else each[0] for each in read]) * (
-            si_factor(unit, "time", name) if unit else 1.0
-        )
+        time = read * (si_factor(unit, "time", name) if unit else 1.0)
         if np.ptp(time[np.isfinite(time)]) == 0:
             continue  # the length of a step, the same in all rows
         said = [] if unit else [f"{show(name)} was read in seconds, as its header has no unit."]
@@ -325,10 +323,9 @@ def _resolution(table: TextTable, friction: str, settings: FitSettings) -> float
     name = friction if friction != MADE_FRICTION else next(filter(None, sources), "")
     if not name:
         return 0.0
-    decimal = "," if table.decimal_comma([name]) else "."
-    read = [number_of(cell, decimal) for cell in table.column(name)]
-    sizes = [abs(each[0]) for each in read if each is not None and each[0]]
-    return _last_digit(table.column(name)) / float(np.median(sizes)) if sizes else 0.0
+    sizes = np.abs(table.values(name))
+    sizes = sizes[sizes > 0]
+    return _last_digit(table.column(name)) / float(np.median(sizes)) if sizes.size else 0.0
 
 
 def _last_digit(cells: Sequence[str]) -> float:
@@ -340,9 +337,5 @@ def _last_digit(cells: Sequence[str]) -> float:
 
 def _array(values: Values, column: str, meaning: str) -> Array:
     """Return a column in SI units, NaN where a value is missing."""
-    return _floats([values.number(i, column, meaning) for i in range(len(values.table.rows))])
-
-
-def _floats(values: Sequence[float | None]) -> Array:
-    """Return numbers as an array, NaN where there is none."""
-    return np.array([np.nan if value is None else value for value in values], float)
+    read = [values.number(i, column, meaning) for i in range(len(values.table.rows))]
+    return np.array([np.nan if value is None else value for value in read])

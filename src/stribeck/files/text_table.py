@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -96,6 +96,29 @@ class TextTable:
         """Return the cells of a column."""
         at = self.header.index(name)
         return tuple(row[at] for row in self.rows)
+
+    def values(self, name: str) -> Array:
+        """Return the numbers of a column as written, NaN where a cell holds none."""
+        decimal = "," if self.decimal_comma([name]) else "."
+        read = [None if cell.lower() in MISSING_CELLS else number_of(cell, decimal) for cell in self.column(name)]
+        return np.array([np.nan if each is None else each[0] for each in read])
+
+    def with_column(self, name: str, cells: Sequence[str]) -> Self:
+        """Return the table with one more column."""
+        rows = tuple((*row, cell) for row, cell in zip(self.rows, cells, strict=True))
+        units = (*self.units_row, "") if self.units_row else ()
+        return replace(self, header=(*self.header, name), rows=rows, units_row=units)
+
+    def of_columns(self, kept: Sequence[int]) -> Self:
+        """Return the table of some of its columns."""
+        rows = tuple(tuple(row[i] for i in kept) for row in self.rows)
+        units = tuple(self.units_row[i] for i in kept) if self.units_row else ()
+        return replace(self, header=tuple(self.header[i] for i in kept), rows=rows, units_row=units)
+
+    def without(self, name: str) -> Self:
+        """Return the table without a column."""
+        at = self.header.index(name)
+        return self.of_columns([i for i in range(len(self.header)) if i != at])
 
 
 def knows_no_name(name: str) -> bool:
@@ -364,13 +387,7 @@ def _drop_repeated_columns(table: TextTable) -> TextTable:
             kept.append(i)
         elif not name and any(cells):
             kept.append(i)
-    return table if len(kept) == len(table.header) else _with_columns(table, kept)
-
-
-def _with_columns(table: TextTable, kept: Sequence[int]) -> TextTable:
-    rows = tuple(tuple(row[i] for i in kept) for row in table.rows)
-    units = tuple(table.units_row[i] for i in kept) if table.units_row else ()
-    return replace(table, header=tuple(table.header[i] for i in kept), rows=rows, units_row=units)
+    return table if len(kept) == len(table.header) else table.of_columns(kept)
 
 
 def _are_pairs(header: tuple[str, ...], rows: list[tuple[str, ...]]) -> bool:

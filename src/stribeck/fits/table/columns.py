@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -154,10 +153,11 @@ def _candidates(table: TextTable, settings: FitSettings, meaning: str) -> list[s
 
 def _counts_rows(table: TextTable, name: str) -> bool:
     """Return whether a column numbers the rows, as one called 'Sample' may."""
-    read = [number_of(cell, ",") for cell in table.column(name)]
-    values = [each[0] for each in read if each is not None]
-    steps = [after - before for before, after in pairwise(values)]
-    return len(values) == len(read) and 2 * sum(step == 1 for step in steps) > len(steps)
+    values = [number_of(cell, ",") for cell in table.column(name)]
+    if None in values:
+        return False
+    steps = np.diff([each[0] for each in values if each])
+    return bool(2 * (steps == 1).sum() > len(steps))
 
 
 def _fits(table: TextTable, name: str, meaning: str, settings: FitSettings) -> bool:
@@ -268,10 +268,10 @@ def _may_be_friction(table: TextTable, name: str) -> bool:
     """Return whether a column could hold friction coefficients: positive numbers, not all alike, that count nothing."""
     if _NO_COEFFICIENT.search(name):
         return False
-    decimal = "," if table.decimal_comma([name]) else "."
-    read = [number_of(cell, decimal) for cell in table.column(name)]
-    values = [each[0] for each in read if each is not None]
-    return 2 * len(values) > len(read) and (len(set(values)) > 1 or len(read) == 1) and any(value > 0 for value in values)
+    values = table.values(name)
+    there = values[~np.isnan(values)]
+    several = len(values) == 1 or np.unique(there).size > 1
+    return bool(2 * there.size > len(values) and several and (there > 0).any())
 
 
 def _listed(table: TextTable) -> str:

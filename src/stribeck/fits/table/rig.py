@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
+from stribeck._types import Array
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import MISSING_CELLS, is_called, is_named, normalised_header, number_of, split_header
 from stribeck.files.text_table import TextTable
@@ -117,17 +118,17 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
         made = _friction(table, _declared_first(found, FORCES, settings), settings, signed)
         if made is not None:
             values, sentence = made
-            table = _with_column(table, MADE_FRICTION, values)
+            table = table.with_column(MADE_FRICTION, _texts(values))
             ours.add("friction")
             said.append(sentence)
     if not known("speed") or (settings.columns.keys() & SPEEDS and "speed" not in settings.columns):
         made = _speed(table, _declared_first(found, SPEEDS, settings), settings)
         if made is not None:
             values, sentence = made
-            table = _with_column(table, MADE_SPEED, values)
+            table = table.with_column(MADE_SPEED, _texts(values))
             for name in filter(None, table.written):
                 if sentence.endswith(f"of column {show(name)}"):
-                    table = _without(table, name)  # the radius of a track is not that of the ball
+                    table = table.without(name)  # the radius of a track is not that of the ball
             ours.add("speed")
             said.append(sentence)
     for meaning, made_column in (("normal_force", MADE_LOAD), ("slide_to_roll", MADE_RATIO)):
@@ -156,9 +157,9 @@ def _declared_first(found: dict[str, list[str]], meanings: frozenset[str], setti
 def temperature_note(table: TextTable) -> tuple[str, ...]:
     """Return a sentence on the measured temperature, for which the viscosity of a case has to be; none without it."""
     for name in _temperature_columns(table):
-        values = [value for value in _cells_or_none(table, name) if value is not None]
-        if values:
-            low, high, unit = min(values), max(values), TEMPERATURES[table.unit(name)]
+        values = table.values(name)
+        if np.isfinite(values).any():
+            low, high, unit = np.nanmin(values), np.nanmax(values), TEMPERATURES[table.unit(name)]
             said = f"{low:g} {unit}" if high - low < TEMPERATURE_TOLERANCE else f"{low:g} to {high:g} {unit}"
             return (f"Temperature by {show(name)}: {said}; the viscosity of the case must be that at this temperature.",)
     return ()
@@ -175,44 +176,40 @@ def _levelled(
 ) -> tuple[TextTable, tuple[str, ...]]:
     """Return the table with a column of the values to which a measured column was set, and a sentence if there are several."""
     values = _ratios(table, name, settings) if meaning == "slide_to_roll" else _numbers(table, name, meaning, settings)
-    if name == MADE_RATIO or not all(value is None or math.isfinite(value) for value in values):
+    if name == MADE_RATIO or np.isinf(values).any():
         return table, ()
     # Pure rolling is a setting; a load of zero is no contact.
-    still = ROLLING_RATIO if meaning == "slide_to_roll" else 0.0
-    sizes = [None if value is None else abs(value) if abs(value) > still else 0.0 for value in values]
-    of_value = _levels([size for size in sizes if size])
-    if meaning == "slide_to_roll":
-        of_value[0.0] = 0.0
-    column = [None if size is None else of_value.get(size) for size in sizes]
-    several = sorted({value for value in column if value is not None})
+    sizes = np.abs(values)
+    still = sizes <= (ROLLING_RATIO if meaning == "slide_to_roll" else 0.0)
+    column = np.where(still, 0.0 if meaning == "slide_to_roll" else np.nan, sizes)
+    column[column > 0] = _levels(column[column > 0])
+    several = np.unique(column[np.isfinite(column)])
     unit = "" if meaning == "slide_to_roll" else " N"
     listed = " and ".join(f"{value:g}{unit}" for value in several)
     row = settings.inputs.quantities.get(made)
     if row is None or row.dimension != ("number" if meaning == "slide_to_roll" else "force"):
-        labels = ["" if value is None else f"{value:g}{unit}" for value in column]
+        labels = [f"{value:g}{unit}" if np.isfinite(value) else "" for value in column]
         advice = f'; give the {made.replace("_", " ")} of each in [fit.curves."{labels[0]}"]'
         if len(several) < 2:
             return table, ()
         if MADE_CURVE in table.header:
             at = table.header.index(MADE_CURVE)
             labels = [f"{cells[at]}, {label}" for cells, label in zip(table.rows, labels, strict=True)]
-            table = _without(table, MADE_CURVE)
-        return _with_texts(table, MADE_CURVE, labels), (f"{show(name)}: a curve for each of {listed}{advice}",)
+            table = table.without(MADE_CURVE)
+        return table.with_column(MADE_CURVE, labels), (f"{show(name)}: a curve for each of {listed}{advice}",)
     sentence = f"{show(name)} as {made.replace('_', ' ')} of the curve{'s' * (len(several) > 1)}, {listed}"
-    return _with_column(_without(table, name), f"{made} [N]" if unit else made, column), (sentence,)
+    return table.without(name).with_column(f"{made} [N]" if unit else made, _texts(column)), (sentence,)
 
 
-def _levels(values: Sequence[float]) -> dict[float, float]:
+def _levels(values: Array) -> Array:
     """Return the setting that each measured value belongs to: the median of those that lie together."""
-    groups: list[list[float]] = []
-    for value in sorted(values):
-        if not groups or value > NEXT_LEVEL * groups[-1][-1]:
-            groups.append([])
-        groups[-1].append(value)
-    settings = [_rounded(float(np.median(group))) for group in groups if len(group) >= FEWEST]
-    if not settings:
-        return {value: _rounded(float(np.median(values))) for value in values}
-    return {value: min(settings, key=lambda each: abs(math.log(each / value))) for value in values}
+    ordered = np.sort(values)
+    groups = np.split(ordered, np.flatnonzero(ordered[1:] > NEXT_LEVEL * ordered[:-1]) + 1)
+    settings = np.array([_rounded(float(np.median(group))) for group in groups if len(group) >= FEWEST])
+    if not settings.size:
+        return np.full(len(values), _rounded(float(np.median(values))) if values.size else np.nan)
+    nearest = np.abs(np.log(settings / values[:, None])).argmin(axis=1)
+    return np.asarray(settings[nearest])
 
 
 def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
@@ -287,28 +284,25 @@ def column_of(table: TextTable, meaning: str, settings: FitSettings) -> str:
     return next((name for name in names if unit_in(table, name, meaning, settings)), "")
 
 
-def measured(table: TextTable, meaning: str, settings: FitSettings) -> list[float | None] | None:
+def measured(table: TextTable, meaning: str, settings: FitSettings) -> Array | None:
     """Return the numbers [SI] of a column of a rig, such as its normal force; None where there is none with a unit."""
     name = column_of(table, meaning, settings)
     return _numbers(table, name, meaning, settings) if name else None
 
 
-def temperatures(table: TextTable) -> tuple[list[float | None], str] | None:
+def temperatures(table: TextTable) -> tuple[Array, str] | None:
     """Return the temperatures [degC] of a column, that of the liquid if there are several, and its header; None if none."""
     for name in _temperature_columns(table):
-        values = _cells_or_none(table, name)
-        if any(value is not None for value in values):
+        values = table.values(name)
+        if np.isfinite(values).any():
             unit = TEMPERATURES[table.unit(name)]
             zero, factor = {"K": (273.15, 1.0), "°F": (32.0, 5 / 9)}.get(unit, (0.0, 1.0))
-            return [None if value is None else (value - zero) * factor for value in values], name
+            return (values - zero) * factor, name
     return None
 
 
-def _friction(
-    table: TextTable, found: dict[str, list[str]], settings: FitSettings, signed: bool
-) -> tuple[list[float | None], str] | None:
+def _friction(table: TextTable, found: dict[str, list[str]], settings: FitSettings, signed: bool) -> tuple[Array, str] | None:
     """Return friction coefficients and how they were obtained; None if the rig gives none."""
-    size = float if signed else abs
     if "friction_force" in found:
         force = found["friction_force"][0]
         if "normal_force" not in found:
@@ -316,21 +310,21 @@ def _friction(
             if stated is None:
                 return None
             value, number, name = stated
-            values = _numbers(table, force, "friction_force", settings)
-            return [
-                None if each is None else size(each / value) for each in values
-            ], f"friction = |{show(force)}| / {value:g} N, {show(name)} of row {number}"
+            values = _numbers(table, force, "friction_force", settings) / value
+            said = f"friction = |{show(force)}| / {value:g} N, {show(name)} of row {number}"
+            return values if signed else np.abs(values), said
         normal = found["normal_force"][0]
         units = {unit_in(table, force, "friction_force", settings), unit_in(table, normal, "normal_force", settings)}
         if len(units) == 1 and units != {""}:
-            pairs = zip(_cells(table, force), _cells(table, normal), strict=True)
-            return _quotients(pairs, size), _ratio_of(force, normal)
-        tangential = _numbers(table, force, "friction_force", settings)
-        pairs = zip(tangential, _numbers(table, normal, "normal_force", settings), strict=True)
-        return _quotients(pairs, size), _ratio_of(force, normal)
-    if "torque" in found and "normal_force" in found:
-        normal = found["normal_force"][0]
-        torque = found["torque"][0]
+            tangential, pressing = _written(table, force), _written(table, normal)
+        else:
+            tangential, pressing = (
+                _numbers(table, name, meaning, settings)
+                for name, meaning in ((force, "friction_force"), (normal, "normal_force"))
+            )
+        said = f"friction = |{show(force)} / {show(normal)}|"
+    elif "torque" in found and "normal_force" in found:
+        torque, normal = found["torque"][0], found["normal_force"][0]
         arm = _length(table, ARM, settings.arm)
         if arm is None:
             raise InputError(
@@ -339,49 +333,46 @@ def _friction(
                 f"The columns are {', '.join(map(show, table.written))}."
             )
         lengths, origin = arm
-        moments = zip(_numbers(table, torque, "torque", settings), lengths, strict=True)
-        values = [None if moment is None or not length else moment / length for moment, length in moments]
-        pairs = zip(values, _numbers(table, normal, "normal_force", settings), strict=True)
-        return _quotients(pairs, size), f"friction = |{show(torque)} / (arm x {show(normal)})|, arm {origin}"
-    return None
+        tangential = _over(_numbers(table, torque, "torque", settings), lengths)
+        pressing = _numbers(table, normal, "normal_force", settings)
+        said = f"friction = |{show(torque)} / (arm x {show(normal)})|, arm {origin}"
+    else:
+        return None
+    values = _over(tangential, np.abs(pressing))
+    return values if signed else np.abs(values), said
 
 
-def _ratio_of(force: str, normal: str) -> str:
-    return f"friction = |{show(force)} / {show(normal)}|"
+def _over(values: Array, by: Array) -> Array:
+    """Return quotients, NaN where they divide by zero."""
+    return values / np.where(by == 0, np.nan, by)
 
 
-def _quotients(pairs: Iterable[tuple[float | None, float | None]], size: Callable[[float], float]) -> list[float | None]:
-    return [size(f / abs(n)) if f is not None and n else None for f, n in pairs]
-
-
-def _length(table: TextTable, pattern: str, given: float | None) -> tuple[list[float | None], str] | None:
+def _length(table: TextTable, pattern: str, given: float | None) -> tuple[Array, str] | None:
     """Return a length for each row and where it is from: the case, a column, or a line above the header; None if nowhere.
 
     A diameter is halved.
     """
+
+    def of_all(length: float, origin: str) -> tuple[Array, str]:
+        return np.full(len(table.rows), length), f"{1e3 * length:g} mm {origin}"
+
     if given is not None:
-        return [given] * len(table.rows), f"{1e3 * given:g} mm of the case"
+        return of_all(given, "of the case")
     for name in filter(None, table.header):
         if is_named(name, pattern) and has_dimension(table.unit(name) or "-", "length"):
-            factor = 0.5 if _is_diameter(name) else 1.0
-            values = [
-                value if value is None else value * si_factor(table.unit(name), "length", name)
-                for value in _cells(table, name)
-            ]
-            return [None if value is None else factor * value for value in values], f"of column {show(name)}"
+            factor = _radius_of(name) * si_factor(table.unit(name), "length", name)
+            return factor * _written(table, name), f"of column {show(name)}"
     for name in filter(None, table.header):
         for inside in re.findall(r"[\[(]([^\[\]()]*)[\])]", name):
             found = _IN_BRACKETS.fullmatch(inside)
             if found and is_named(found["name"], pattern) and has_dimension(found["unit"], "length"):
                 length = float(found["value"].replace(",", ".")) * si_factor(found["unit"], "length", name)
-                length *= 0.5 if _is_diameter(found["name"]) else 1.0
-                return [length] * len(table.rows), f"{1e3 * length:g} mm by {show(name)}"
+                return of_all(_radius_of(found["name"]) * length, f"by {show(name)}")
     stated = _stated(table, pattern, "length")
     if stated is None:
         return None
     length, number, name = stated
-    length *= 0.5 if _is_diameter(name) else 1.0
-    return [length] * len(table.rows), f"{1e3 * length:g} mm by row {number}"
+    return of_all(_radius_of(name) * length, f"by row {number}")
 
 
 def _stated(table: TextTable, pattern: str, dimension: str) -> tuple[float, int, str] | None:
@@ -427,56 +418,50 @@ def _statements(text: str, below: str) -> list[tuple[str, str, str]]:
     return [(*split_header(name.strip()), value.strip()) for name, value in pairs]
 
 
-def _is_diameter(name: str) -> bool:
-    return re.search(r"dia(?:meter)?\b|durchmesser|\bd$", name, re.IGNORECASE) is not None
+def _radius_of(name: str) -> float:
+    """Return the radius over what a name means: one half of a diameter."""
+    return 0.5 if re.search(r"dia(?:meter)?\b|durchmesser|\bd$", name, re.IGNORECASE) else 1.0
 
 
-def _speed(table: TextTable, found: dict[str, list[str]], settings: FitSettings) -> tuple[list[float | None], str] | None:
+def _speed(table: TextTable, found: dict[str, list[str]], settings: FitSettings) -> tuple[Array, str] | None:
     """Return the sum of the surface speeds and how it was obtained; None if the rig gives no speed."""
+
+    def of(meaning: str, which: int = 0) -> Array:
+        return _numbers(table, found[meaning][which], meaning, settings)
+
     if "entrainment_speed" in found:
         name = found["entrainment_speed"][0]
-        values = [None if value is None else 2 * value for value in _numbers(table, name, "entrainment_speed", settings)]
-        return values, f"speed = 2 x {show(name)}, a mean of two surface speeds; the speed of a case is their sum"
-    if len(found.get("surface_speeds", [])) == 2:
-        first, second = found["surface_speeds"]
-        pairs = zip(*(_numbers(table, each, "surface_speeds", settings) for each in (first, second)), strict=True)
-        values = [None if a is None or b is None else abs(a + b) for a, b in pairs]
-        return values, f"speed = {show(first)} + {show(second)}"
-    if len(found.get("surface_speeds", [])) == 1 and not settings.rolls and "slide_to_roll" not in found:
-        name = found["surface_speeds"][0]
-        values = [None if value is None else abs(value) for value in _numbers(table, name, "surface_speeds", settings)]
-        return values, f"speed = {show(name)}, with the other surface at rest"
+        said = f"speed = 2 x {show(name)}, a mean of two surface speeds; the speed of a case is their sum"
+        return 2 * of("entrainment_speed"), said
+    surfaces = found.get("surface_speeds", [])
+    if len(surfaces) == 2:
+        return np.abs(of("surface_speeds") + of("surface_speeds", 1)), f"speed = {' + '.join(map(show, surfaces))}"
+    if len(surfaces) == 1 and not settings.rolls and "slide_to_roll" not in found:
+        return np.abs(of("surface_speeds")), f"speed = {show(surfaces[0])}, with the other surface at rest"
     if "sliding_speed" in found and "slide_to_roll" in found:
         name, ratio = found["sliding_speed"][0], found["slide_to_roll"][0]
         ratios = _ratios(table, ratio, settings)
-        if any(each is not None and abs(each) <= ROLLING_RATIO for each in ratios):
+        if (np.abs(ratios) <= ROLLING_RATIO).any():
             raise InputError(
                 f"{table.path}: {show(name)} does not give the sum of the surface speeds where {show(ratio)} is zero; write a "
                 "column 'mean speed' or 'sum of speeds', or take these rows out."
             )
-        pairs = zip(_numbers(table, name, "sliding_speed", settings), ratios, strict=True)
-        values = [None if a is None or b is None else abs(2 * a / b) for a, b in pairs]
-        return values, f"speed = 2 x {show(name)} / {show(ratio)}, the sum of the surface speeds"
+        said = f"speed = 2 x {show(name)} / {show(ratio)}, the sum of the surface speeds"
+        return np.abs(2 * of("sliding_speed") / ratios), said
     if "sliding_speed" in found:
         name = found["sliding_speed"][0]
         if len(settings.ratios) != 1 or 0 in settings.ratios:
-            said = " and ".join(f"{ratio:g}" for ratio in settings.ratios)
+            ratios_said = " and ".join(f"{ratio:g}" for ratio in settings.ratios)
             raise InputError(
                 f"{table.path}: {show(name)} does not give the sum of the surface speeds at the slide-to-roll ratio "
-                f"{said}; write a column 'mean speed' or 'sum of speeds'."
+                f"{ratios_said}; write a column 'mean speed' or 'sum of speeds'."
             )
-        factor = abs(2 / settings.ratios[0])
-        values = [None if value is None else factor * value for value in _numbers(table, name, "sliding_speed", settings)]
-        return (
-            values,
-            f"speed = 2 x {show(name)} / {settings.ratios[0]:g}, the slide-to-roll ratio; the sum of the surface speeds",
-        )
-    if "rotation" in found:
-        return _speed_of_rotation(table, found, settings)
-    return None
+        said = f"speed = 2 x {show(name)} / {settings.ratios[0]:g}, the slide-to-roll ratio; the sum of the surface speeds"
+        return abs(2 / settings.ratios[0]) * of("sliding_speed"), said
+    return _speed_of_rotation(table, found, settings) if "rotation" in found else None
 
 
-def _speed_of_rotation(table: TextTable, found: dict[str, list[str]], settings: FitSettings) -> tuple[list[float | None], str]:
+def _speed_of_rotation(table: TextTable, found: dict[str, list[str]], settings: FitSettings) -> tuple[Array, str]:
     """Return the speed on a track that turns, and how it was obtained."""
     name = found["rotation"][0]
     if settings.rolls or "slide_to_roll" in found or len(found["rotation"]) > 1:
@@ -492,22 +477,21 @@ def _speed_of_rotation(table: TextTable, found: dict[str, list[str]], settings: 
             f"{_without_unit(table, TRACK)}."
         )
     lengths, origin = radius
-    pairs = zip(_numbers(table, name, "rotation", settings), lengths, strict=True)
-    values = [None if turns is None or length is None else turns * length for turns, length in pairs]
-    return values, f"speed = {show(name)} x the radius of the track, {origin}"
+    said = f"speed = {show(name)} x the radius of the track, {origin}"
+    return _numbers(table, name, "rotation", settings) * lengths, said
 
 
-def _ratios(table: TextTable, name: str, settings: FitSettings) -> list[float | None]:
+def _ratios(table: TextTable, name: str, settings: FitSettings) -> Array:
     """Return a slide-to-roll ratio as a number; in per cent if its unit says so."""
     unit = unit_in(table, name, "slide_to_roll", settings)
     if unit not in BARE:
         raise InputError(
             f"{table.path}: column {show(name)} has the unit {show(unit)}; a slide-to-roll ratio is a bare number or in %."
         )
-    return [None if value is None else BARE[unit] * value for value in _cells(table, name)]
+    return BARE[unit] * _written(table, name)
 
 
-def _numbers(table: TextTable, name: str, meaning: str, settings: FitSettings) -> list[float | None]:
+def _numbers(table: TextTable, name: str, meaning: str, settings: FitSettings) -> Array:
     """Return the numbers of a column in SI units."""
     dimension = DIMENSIONS_OF[meaning]
     written = unit_in(table, name, meaning, settings)
@@ -516,40 +500,18 @@ def _numbers(table: TextTable, name: str, meaning: str, settings: FitSettings) -
         raise InputError(
             f"{table.path}: column {show(name)} has no unit; write it in the header, as in '{name} [{UNITS[dimension]}]'{key}."
         )
-    factor = si_factor(written, dimension, f"the unit of column {show(name)}")
-    return [None if value is None else factor * value for value in _cells(table, name)]
+    return si_factor(written, dimension, f"the unit of column {show(name)}") * _written(table, name)
 
 
-def _cells(table: TextTable, name: str) -> list[float | None]:
-    """Return the numbers of a column as written, None where there is none; refuse text."""
-    found = _cells_or_none(table, name)
+def _written(table: TextTable, name: str) -> Array:
+    """Return the numbers of a column as written, NaN where there is none; refuse text."""
+    found = table.values(name)
     for number, cell, value in zip(table.numbers, table.column(name), found, strict=True):
-        if value is None and cell.lower() not in MISSING_CELLS:
+        if np.isnan(value) and cell.lower() not in MISSING_CELLS:
             raise InputError(f"{table.path}: row {number}, column {show(name)}: {show(cell)} is not a number.")
     return found
 
 
-def _cells_or_none(table: TextTable, name: str) -> list[float | None]:
-    decimal = "," if table.decimal_comma([name]) else "."
-    read = [None if cell.lower() in MISSING_CELLS else number_of(cell, decimal) for cell in table.column(name)]
-    return [None if each is None else each[0] for each in read]
-
-
-def _with_column(table: TextTable, name: str, values: Sequence[float | None]) -> TextTable:
-    """Return the table with one more column."""
-    texts = ["" if value is None or not math.isfinite(value) else repr(value) for value in values]
-    return _with_texts(table, name, texts)
-
-
-def _without(table: TextTable, name: str) -> TextTable:
-    """Return the table without a column."""
-    at = table.header.index(name)
-    header, *rows = ((*row[:at], *row[at + 1 :]) for row in (table.header, *table.rows))
-    return replace(table, header=header, rows=tuple(rows), units_row=(*table.units_row[:at], *table.units_row[at + 1 :]))
-
-
-def _with_texts(table: TextTable, name: str, texts: Sequence[str]) -> TextTable:
-    """Return the table with one more column of cells."""
-    rows = tuple((*row, text) for row, text in zip(table.rows, texts, strict=True))
-    units = (*table.units_row, "") if table.units_row else ()
-    return replace(table, header=(*table.header, name), rows=rows, units_row=units)
+def _texts(values: Array) -> list[str]:
+    """Return the cells of a column of numbers."""
+    return [repr(value) if math.isfinite(value) else "" for value in values.tolist()]

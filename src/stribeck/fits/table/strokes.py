@@ -9,7 +9,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import MISSING_CELLS, number_of, rows_listed
+from stribeck.files.cells import rows_listed
 from stribeck.files.text_table import TextTable
 from stribeck.quantities.units import InputError, show
 
@@ -33,7 +33,7 @@ class _Kind:
 
 def without_codes(table: TextTable, abscissa: str, friction: Sequence[str]) -> TextTable:
     """Return the table with empty cells for friction that programs write as missing; refuse a speed like that."""
-    coded = np.isin(_numbers(table, abscissa), CODES)
+    coded = np.isin(table.values(abscissa), CODES)
     if coded.any():
         code = table.column(abscissa)[int(np.flatnonzero(coded)[0])]
         raise InputError(
@@ -41,7 +41,7 @@ def without_codes(table: TextTable, abscissa: str, friction: Sequence[str]) -> T
             "where a value is missing; leave such cells empty."
         )
     for name in friction:
-        coded = np.isin(_numbers(table, name), CODES)
+        coded = np.isin(table.values(name), CODES)
         if coded.any():
             table = _emptied(table, name, coded)
     return table
@@ -50,8 +50,8 @@ def without_codes(table: TextTable, abscissa: str, friction: Sequence[str]) -> T
 def without_stops(table: TextTable, abscissa: str, friction: Sequence[str], settings: FitSettings) -> TextTable:
     """Return the table without rows at rest and reversals, if its signs are directions of strokes."""
     table = without_codes(table, abscissa, friction)
-    speeds = _numbers(table, abscissa)
-    frictions = {name: _numbers(table, name) for name in friction}
+    speeds = table.values(abscissa)
+    frictions = {name: table.values(name) for name in friction}
     largest = np.nanmax(np.abs(speeds), initial=0.0)
     rest = np.abs(speeds) <= REST_SPEED * largest
     if settings.magnitudes:
@@ -132,10 +132,3 @@ def _sentence(table: TextTable, kind: _Kind) -> str:
 
 def _listed(table: TextTable, rows: Flags) -> str:
     return rows_listed(table.numbers[i] for i in np.flatnonzero(rows))
-
-
-def _numbers(table: TextTable, name: str) -> Array:
-    """Return the numbers of a column as written, NaN where there is none."""
-    decimal = "," if table.decimal_comma([name]) else "."
-    read = [None if cell.lower() in MISSING_CELLS else number_of(cell, decimal) for cell in table.column(name)]
-    return np.array([np.nan if each is None else each[0] for each in read])
