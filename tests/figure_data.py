@@ -14,6 +14,6 @@ def data_of(name):
 @cache
 def picture_of(name):
     """Return the picture of a figure, laid out."""
-    figure = load_figure(name).draw(data_of(name))
+    figure = load_figure(name).picture(data_of(name))
     figure.canvas.draw()
     return figure

@@ -18,7 +18,7 @@ from figure_data import data_of, picture_of
 
 import stribeck as sb
 from stribeck.figures import FIGURES, PaperFigure, build, figure_names, load_figure, make_figures, style
-from stribeck.figures.build import FigureJob, column, dataset
+from stribeck.figures.job import FigureJob
 from stribeck.files.datasets import write_netcdf
 
 PANELS = {
@@ -131,26 +131,21 @@ class Fakes:
         self.problems = {}
 
     def figure(self, name):
-        def compute(report):
+        def compute(work):
             self.computed.append(name)
-            report(1, 2)
+            work.report(1, 2)
             if name in self.problems:
                 raise self.problems[name]
-            report(2, 2)
-            variables = {
-                "y": column("x", [1.0, np.nan, 3.0], "what is drawn"),
-                "words": column("x", ["a", "bc", "d"], "names"),
-            }
-            coords = {"x": column("x", [0.1, 0.2, 0.3], "where", "s")}
-            return dataset(variables, coords, finding="It is 3.", rtol=1e-7, error_estimate=1e-8)
+            work.report(2, 2)
+            work.along(x=([0.1, 0.2, 0.3], "where"))
+            work.give("x", y=([1.0, np.nan, 3.0], "what is drawn"), words=(["a", "bc", "d"], "names"))
+            return work.dataset("It is 3.")
 
-        def draw(data):
-            figure = style.new_figure(data, 4.0, 2.0)
+        def draw(figure, data):
             (axes,) = style.panels(figure, 1, 1)
             axes.plot(data.x, data.y)
-            return figure
 
-        return PaperFigure(name, "Fake", "it is 4.", compute, draw)
+        return PaperFigure(name, "Fake", "it is 4.", compute, draw, size=(4.0, 2.0))
 
 
 @pytest.fixture
@@ -172,7 +167,7 @@ def test_a_figure_is_a_png_an_svg_and_its_data(fakes, tmp_path):
     assert made.files[0].read_bytes().startswith(b"\x89PNG") and made.files[1].read_bytes().startswith(b"<?xml")
     data = opened(made.files[2])
     assert (data.attrs["claim"], data.attrs["finding"]) == ("it is 4.", "It is 3.")
-    assert data.x.attrs == {"units": "s", "long_name": "where"}
+    assert data.x.attrs == {"units": "1", "long_name": "where"}
     np.testing.assert_array_equal(data.y, [1.0, np.nan, 3.0])
     assert data.words.values.tolist() == ["a", "bc", "d"]
 
@@ -340,7 +335,7 @@ def test_no_state_is_given_that_did_not_converge(monkeypatch):
     for curve, outcome in ((whole, sb.Outcome.PATH_LOST), (few, whole.outcome)):
         with monkeypatch.context() as patch:
             patch.setattr(type(curve), "outcome", property(lambda self, outcome=outcome: outcome))
-            patch.setattr("stribeck.figures.build.stribeck_curve", lambda curve=curve, **arguments: curve)
+            patch.setattr("stribeck.figures.job.stribeck_curve", lambda curve=curve, **arguments: curve)
             with pytest.raises(sb.SolveError, match="of 3 points"):
                 work.curve(load=0.1, roughness=0.01)
     assert (work.done, work.error_estimate) == (0, 0.0)

@@ -1,4 +1,4 @@
-"""Making figures: what they solve, the dataset they make of it, and the files in a folder, whole or not at all.
+"""Making figures: their files in a folder, whole or not at all.
 
 The NetCDF file of a figure is also its memory. It holds a fingerprint of the sources that its numbers come from, and is
 used again as long as these are the same.
@@ -8,25 +8,17 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-
-from stribeck.contacts.groups import Groups
-from stribeck.curves.result import StribeckCurve
-from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.figures import style
-from stribeck.figures.paper_figure import PaperFigure, Report, figure_names, load_figure
-from stribeck.files.datasets import NETCDF_ENDINGS, import_xarray, write_netcdf
+from stribeck.figures.paper_figure import PaperFigure, figure_names, load_figure
+from stribeck.files.datasets import NETCDF_ENDINGS, write_netcdf
 from stribeck.files.writing import MissingExtraError, PathLike, atomic_write, check_writable
-from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
-from stribeck.solver.solution import Solution
-from stribeck.solver.solve import solve
 from stribeck.solver.solve_error import SolveError
 
 if TYPE_CHECKING:
@@ -46,74 +38,8 @@ SOURCES_WITHOUT_NUMBERS = (
     "sweeps/",
 )
 
-Column = tuple[str | Sequence[str], Any, dict[str, str]]
-
 OnProgress = Callable[[str, int, int], object]
 """``on_progress(name, done, steps)`` is called at the start of each figure and after each step of its work."""
-
-
-@dataclass
-class FigureJob:
-    """The solves of one figure: each is reported when done, and one that fails ends the figure."""
-
-    report: Report  # As in :class:`PaperFigure`
-    steps: int  # Number of calls of :meth:`solve` and :meth:`curve` to come
-    rtol: float = 1e-7  # Relative tolerance of each state
-    done: int = 0  # Number of calls so far
-    error_estimate: float = 0.0  # Largest estimated relative error of the states so far
-
-    def solve(self, speed: float, load: float, roughness: float) -> Solution:
-        """Return one converged state."""
-        found: Solution = solve(Groups(speed, load, roughness), rtol=self.rtol)
-        self._step(found)
-        return found
-
-    def curve(self, **arguments: Any) -> StribeckCurve:
-        """Return a Stribeck curve of which every point converged."""
-        interrupted = False
-
-        def report(done: int, points: int) -> None:
-            nonlocal interrupted
-            try:
-                self.report(self.done, self.steps)
-            except KeyboardInterrupt:
-                # The curve takes it as the wish to stop there, and returns or raises something else.
-                interrupted = True
-                raise
-
-        try:
-            found: StribeckCurve = stribeck_curve(rtol=self.rtol, on_point=report, **{"definition": "published"} | arguments)
-        except SolveError as problem:
-            if interrupted or problem.outcome is Outcome.INTERRUPTED:
-                raise KeyboardInterrupt from None
-            raise
-        if interrupted or found.outcome is Outcome.INTERRUPTED:
-            raise KeyboardInterrupt
-        if not found.outcome.ok or len(found) < found.requested:
-            raise SolveError(found.outcome, None, f"{len(found)} of {found.requested} points: {found.outcome.value}")
-        self._step(*found.solutions)
-        return found
-
-    @property
-    def attributes(self) -> dict[str, float]:
-        """Tolerance and largest estimated error, as attributes of the dataset."""
-        return {"rtol": self.rtol, "error_estimate": self.error_estimate}
-
-    def _step(self, *solutions: Solution) -> None:
-        self.error_estimate = max(self.error_estimate, *(solution.error_estimate for solution in solutions))
-        self.done += 1
-        self.report(self.done, self.steps)
-
-
-def column(dims: str | Sequence[str], values: Any, long_name: str, units: str = "1") -> Column:
-    """Return a variable of a dataset."""
-    return dims, np.asarray(values), {"units": units, "long_name": long_name}
-
-
-def dataset(variables: Mapping[str, Column], coords: Mapping[str, Column], **attributes: Any) -> xarray.Dataset:
-    """Return a dataset."""
-    made: xarray.Dataset = import_xarray("the data of a figure").Dataset(dict(variables), dict(coords), attributes)
-    return made
 
 
 @dataclass(frozen=True)
@@ -176,7 +102,7 @@ def _make(figure: PaperFigure, place: Path, force: bool, on_progress: OnProgress
         data = data.assign_attrs(fingerprint=mark)
         # Before the pictures: it is the sign that they may be replaced.
         write_netcdf(data, file, force=True)
-    picture = figure.draw(data)
+    picture = figure.picture(data)
     for ending in PICTURE_ENDINGS:
         with atomic_write(stem.with_suffix(ending), PICTURE_ENDINGS, force=True) as temporary:
             style.save(picture, temporary)

@@ -12,33 +12,44 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, TINTS, blank_figure
+from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, TINTS, Axes, Figure, blank_figure
 
 if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from xarray import DataArray as DataArray
+    from xarray import Dataset as Dataset
+else:  # Annotations that the modules of the figures import
+    DataArray = Dataset = Any
 
 __all__ = [
+    "Axes",
     "CONTACT",
+    "CYAN",
     "DASHED",
     "DOTTED",
+    "DataArray",
+    "Dataset",
+    "Figure",
     "FLUID",
     "GREEN",
     "GREY",
     "INK",
     "MARK",
     "TINTS",
-    "legend",
-    "letter",
+    "inset",
+    "limit",
+    "lines",
     "new_figure",
+    "panel",
     "panels",
     "power",
     "save",
     "sequence",
     "slope",
+    "small_legend",
+    "steps",
 ]
 
+CYAN = "#56b4e9"
 GREEN = "#009e73"  # The fourth of the strong colours of Okabe and Ito, beside CONTACT, FLUID and MARK.
 
 DASHED: Any = (0, (5, 2.5))  # Dashes of lines that formulas give; states of the solver are full lines or dots.
@@ -49,7 +60,7 @@ FOOT_LINE_HEIGHT = 0.17  # Height of a line of the foot [inch].
 LETTERS_PER_INCH = 17.0  # Letters of the foot that fit into an inch.
 
 
-def new_figure(data: xarray.Dataset, width: float, height: float) -> Figure:
+def new_figure(data: Dataset, width: float, height: float) -> Figure:
     """Return an empty figure with the title, and a foot of claim, finding and source of the data."""
     foot = _foot(data, int(LETTERS_PER_INCH * (width - 0.3)))
     head, low = 0.45, FOOT_LINE_HEIGHT * len(foot) + 0.22
@@ -84,16 +95,45 @@ def house_style(axes: Axes) -> None:
     axes.yaxis.label.set(color=INK, size=10)
 
 
-def letter(axes: Axes, which: str, text: str = "") -> None:
-    """Write the letter of a panel over it, and what it shows."""
-    label = "(+)" if which == "+" else f"({which})"
-    axes.set_title(f"{label} {text}".strip(), loc="left", size=9.5, color=INK, weight="semibold" if not text else "normal")
+def panel(axes: Axes, which: str, text: str, legend: dict[str, Any] | None = None, **settings: Any) -> None:
+    """Give a panel its letter, what it shows, the settings of its axes, and a legend."""
+    axes.set(**settings)
+    axes.set_title(f"({which}) {text}", loc="left", size=9.5, color=INK)
+    if legend is not None:
+        small_legend(axes, **legend)
 
 
-def legend(axes: Axes, **options: Any) -> None:
-    """Put the legend of a panel inside it, small and without frame."""
-    small: dict[str, Any] = {"frameon": False, "fontsize": 8, "labelcolor": INK, "handlelength": 2.2, "title_fontsize": 8.5}
+def small_legend(axes: Axes, **options: Any) -> None:
+    """Put a legend inside a panel, small and without frame."""
+    small = {"frameon": False, "fontsize": 8, "labelcolor": INK, "handlelength": 2.2, "title_fontsize": 8.5}
     axes.legend(**small | options)
+
+
+def inset(axes: Axes, bounds: tuple[float, float, float, float], title: str) -> Axes:
+    """Return a small panel inside another one."""
+    found = axes.inset_axes(bounds)
+    house_style(found)
+    found.set_title(title, size=8, color=GREY, pad=2)
+    found.tick_params(labelsize=7)
+    return found
+
+
+def steps(axes: Axes, x: DataArray, rows: DataArray, values: DataArray, lw: float = 1.4) -> None:
+    """Draw a line for each step of a parameter over the whole of x, dark to light, labelled by its value."""
+    for colour, row, value in zip(sequence(len(values)), rows.values, values.values, strict=True):
+        axes.plot(x, row, color=colour, lw=lw, label=power(value))
+    axes.set_xlim(float(x[0]), float(x[-1]))
+
+
+def limit(axes: Axes, x: Any, y: Any, label: str, **look: Any) -> None:
+    """Draw what a formula gives in a limit."""
+    axes.plot(x, y, **{"color": INK, "lw": 1.2, "ls": DASHED, "label": label} | look)
+
+
+def lines(axes: Axes, x: Any, data: Dataset, table: dict[str, tuple[str, str, Any]], **look: Any) -> None:
+    """Draw variables of a dataset, each with its label, colour and dashes."""
+    for name, (label, colour, dashes) in table.items():
+        axes.plot(x, data[name], **{"color": colour, "ls": dashes, "lw": 1.5, "label": label} | look)
 
 
 def sequence(count: int) -> list[str]:
@@ -132,7 +172,7 @@ def save(figure: Figure, path: Path) -> None:
         figure.savefig(path, metadata=metadata)
 
 
-def _foot(data: xarray.Dataset, width: int) -> list[tuple[str, str]]:
+def _foot(data: Dataset, width: int) -> list[tuple[str, str]]:
     """Return the lines of the foot with their colours."""
     numbers = [f"{name} {data.attrs[key]:.1g}" for name, key in (("rtol", "rtol"), ("estimated error", "error_estimate"))]
     parts: Sequence[tuple[str, str]] = (

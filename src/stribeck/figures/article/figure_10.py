@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,14 +10,17 @@ from stribeck._types import Array
 from stribeck.asymptotics.rough import boundary, perturbation
 from stribeck.curves.result import StribeckCurve
 from stribeck.figures import style
-from stribeck.figures.article.stribeck_cases import CASES, case_coords, drawn_cases, over, solved_cases
-from stribeck.figures.build import FigureJob, column, dataset
-from stribeck.figures.paper_figure import PaperFigure, Report
+from stribeck.figures.article.stribeck_cases import CASES, drawn_cases, give_cases, over, solved_cases
+from stribeck.figures.job import FigureJob
+from stribeck.figures.style import Axes, Dataset, Figure
 
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+TITLE = "Boundary-to-mixed lubrication transition"
+CLAIM = (
+    "friction follows mu_0 (1 - F_f/F_N) remarkably well as the speed falls, F_f/F_N = 1 is where the transition lies, "
+    "and (1/2)(-ln F)^5 provides a very good description of phi."
+)
+SIZE = 11.5, 7.4
+STEPS = len(CASES)
 
 SPEED_RANGE = 1e-9, 30.0  # Speed groups of the curves.
 LOAD_RANGE = 1e-12, 0.7  # Load groups of panel (b).
@@ -44,8 +46,8 @@ PHI_LAWS = {
 }
 
 
-def _compute(report: Report) -> xarray.Dataset:
-    work = FigureJob(report, steps=len(CASES))
+def compute(work: FigureJob) -> Dataset:
+    """Solve the curves, take one apart, and compare the load on the fluid and phi with their laws."""
     curves = solved_cases(work, SPEED_RANGE, points=85)
     friction, law = over(curves, "friction"), over(curves, "hydrodynamic_friction")
     share = np.array([curve.observable("contact_load_share") for curve in curves])
@@ -81,28 +83,26 @@ def _compute(report: Report) -> xarray.Dataset:
         f"{slope[fitted].min():.1f} to {slope[fitted].max():.1f}; our closed form within {100 * off['phi_closed'].max():.2f} "
         "%."
     )
-    grid = "case", "speed"
-    variables = {
-        "friction": column(grid, friction, "friction coefficient, definition published"),
-        "hydrodynamic_friction": column(grid, law, "friction of smooth surfaces by the root of squares of the paper"),
-        "contact_load_share": column(grid, share, "part of the load on asperities"),
-        "boundary_friction": column(grid, boundary_law, "mu_0 (1 - F_f/F_N) with F_f from phi by quadrature"),
-        "excess": column("case", excess, "largest friction where asperities carry more than 90 % of the load, less mu_0"),
-    }
-    variables |= {
-        name: column("speed", values, f"of the blue case: {name.replace('_', ' ')}") for name, values in shown.items()
-    }
-    for name, values in phis.items():
-        variables[name] = column("phi_load", values, f"the function {name.replace('_', ' ')} of the load")
-    variables["power_of_logarithm"] = column("phi_load", slope, "d ln phi / d ln(-ln load)")
-    variables["share_at_criterion"] = column((), at_one, "part of the load on the fluid where lambda^2 phi/kappa^4 = 1")
-    for name, ratio in ratios.items():
-        variables[f"{name}_ratio"] = column((), ratio, f"part of the load on the fluid over {name}, where it is near 1e-3")
-    coords = case_coords() | {
-        "speed": column("speed", curves[0].values, "speed group lambda"),
-        "phi_load": column("phi_load", loads, "load group"),
-    }
-    return dataset(variables, coords, finding=finding, shown_case=CASE_IN_PARTS, **work.attributes)
+    work.along(speed=(curves[0].values, "speed group lambda"), phi_load=(loads, "load group"))
+    work.give(
+        ("case", "speed"),
+        friction=(friction, "friction coefficient, definition published"),
+        hydrodynamic_friction=(law, "friction of smooth surfaces by the root of squares of the paper"),
+        contact_load_share=(share, "part of the load on asperities"),
+        boundary_friction=(boundary_law, "mu_0 (1 - F_f/F_N) with F_f from phi by quadrature"),
+    )
+    work.give("case", excess=(excess, "largest friction where asperities carry more than 90 % of the load, less mu_0"))
+    work.give("speed", **{name: (values, f"of the blue case: {name.replace('_', ' ')}") for name, values in shown.items()})
+    functions = {name: (values, f"the function {name.replace('_', ' ')} of the load") for name, values in phis.items()}
+    work.give("phi_load", **functions, power_of_logarithm=(slope, "d ln phi / d ln(-ln load)"))
+    near_one = "part of the load on the fluid over {}, where it is near 1e-3"
+    work.give(
+        (),
+        share_at_criterion=(at_one, "part of the load on the fluid where lambda^2 phi/kappa^4 = 1"),
+        **{f"{name}_ratio": (ratio, near_one.format(name)) for name, ratio in ratios.items()},
+    )
+    give_cases(work)
+    return work.dataset(finding, shown_case=CASE_IN_PARTS)
 
 
 def _taken_apart(curve: StribeckCurve) -> dict[str, Array]:
@@ -121,31 +121,29 @@ def _taken_apart(curve: StribeckCurve) -> dict[str, Array]:
     }
 
 
-def _draw(data: xarray.Dataset) -> Figure:
-    figure = style.new_figure(data, 11.5, 7.4)
+def draw(figure: Figure, data: Dataset) -> None:
+    """Draw the fall of friction, the load on the fluid, and phi with its forms."""
     a, shares, b, ratios = style.panels(figure, 2, 2)
     for i, look, label in drawn_cases(data):
         a.semilogx(data.hydrodynamic_friction[i], data.friction[i], markevery=2, label=label, **look)
         a.plot(data.hydrodynamic_friction[i], data.boundary_friction[i], color=look["color"], ls=style.DOTTED, lw=1.5)
-    a.set(xlabel=r"$\mu_{f,\mathrm{th}}$", ylabel=r"friction coefficient $\mu$", ylim=(0, 1.35), xlim=(3e-5, 2))
-    style.letter(a, "a", r"dotted: $\mu_0(1 - F_f/F_N)$")
-    style.legend(a, loc="lower left", title=r"$\bar F_N$,  $\bar h_\mathrm{rms}$", fontsize=7.5)
+    legend = {"loc": "lower left", "title": r"$\bar F_N$,  $\bar h_\mathrm{rms}$", "fontsize": 7.5}
+    x, y = r"$\mu_{f,\mathrm{th}}$", r"friction coefficient $\mu$"
+    style.panel(a, "a", r"dotted: $\mu_0(1 - F_f/F_N)$", legend, xlabel=x, ylabel=y, ylim=(0, 1.35), xlim=(3e-5, 2))
     _draw_shares(shares, data)
-    for name, (label, colour, dashes) in PHI_LAWS.items():
-        b.loglog(data.phi_load, data[name], color=colour, ls=dashes, lw=1.6, label=label)
-        ratios.semilogx(data.phi_load, data[name] / data.phi, color=colour, ls=dashes, lw=1.6, label=label)
-    b.set(xlabel=r"load $\bar F_N$", ylabel=r"$\phi$", ylim=(1e-9, 1e9))
-    style.letter(b, "b", r"auxiliary function $\phi$, $L = -\ln \bar F_N$")
-    style.legend(b, loc="center left", bbox_to_anchor=(0.0, 0.62))
+    style.lines(b, data.phi_load, data, PHI_LAWS, lw=1.6)
+    legend = {"loc": "center left", "bbox_to_anchor": (0.0, 0.62)}
+    logarithmic = {"xscale": "log", "yscale": "log", "xlabel": r"load $\bar F_N$", "ylabel": r"$\phi$", "ylim": (1e-9, 1e9)}
+    style.panel(b, "b", r"auxiliary function $\phi$, $L = -\ln \bar F_N$", legend, **logarithmic)
+    style.lines(ratios, data.phi_load, data / data.phi, PHI_LAWS, lw=1.6)
     ratios.axvspan(*FIT_LOAD_RANGE, color="#f4f4f2", lw=0, zorder=0)
     ratios.text(1e-3, 0.15, "range of the fit", size=8, color=style.GREY, ha="center")
-    ratios.set(xlabel=r"load $\bar F_N$", ylabel=r"form over quadrature", ylim=(0, 4))
-    style.letter(ratios, "+", "ratio to the quadrature")
-    style.legend(ratios, loc="upper left", handles=ratios.lines[1:])
-    return figure
+    legend = {"loc": "upper left", "handles": ratios.lines[1:]}
+    over_quadrature = {"xscale": "log", "xlabel": r"load $\bar F_N$", "ylabel": r"form over quadrature", "ylim": (0, 4)}
+    style.panel(ratios, "+", "ratio to the quadrature", legend, **over_quadrature)
 
 
-def _draw_shares(axes: Axes, data: xarray.Dataset) -> None:
+def _draw_shares(axes: Axes, data: Dataset) -> None:
     case = int(data.attrs["shown_case"])
     every = slice(None, None, 2)
     for name, marker, face, label in (
@@ -156,19 +154,8 @@ def _draw_shares(axes: Axes, data: xarray.Dataset) -> None:
         axes.loglog(
             data.speed[every], data[name].where(data[name] > 0)[every], marker, color=style.INK, mfc=face, ms=4, label=label
         )
-    for name, (label, colour, dashes) in SHARE_LAWS.items():
-        axes.plot(data.speed, data[name], color=colour, ls=dashes, lw=1.5, label=label)
-    axes.set(xlabel=r"speed $\lambda$", ylabel="share of load or friction", xlim=(1e-9, 1e-3), ylim=(1e-8, 1e2))
+    style.lines(axes, data.speed, data, SHARE_LAWS)
     load, roughness = (style.power(float(data[name][case])) for name in ("load", "roughness"))
-    style.letter(axes, "+", rf"printed and corrected, $\bar F_N$ = {load}, $\bar h_\mathrm{{rms}}$ = {roughness}")
-    style.legend(axes, loc="lower right", fontsize=7.5)
-
-
-FIGURE = PaperFigure(
-    name="10",
-    title="Boundary-to-mixed lubrication transition",
-    claim="friction follows mu_0 (1 - F_f/F_N) remarkably well as the speed falls, F_f/F_N = 1 is where the transition lies, "
-    "and (1/2)(-ln F)^5 provides a very good description of phi.",
-    compute=_compute,
-    draw=_draw,
-)
+    text = rf"printed and corrected, $\bar F_N$ = {load}, $\bar h_\mathrm{{rms}}$ = {roughness}"
+    settings = {"xlabel": r"speed $\lambda$", "ylabel": "share of load or friction", "xlim": (1e-9, 1e-3), "ylim": (1e-8, 1e2)}
+    style.panel(axes, "+", text, {"loc": "lower right", "fontsize": 7.5}, **settings)

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
 from stribeck.figures import style
-from stribeck.figures.paper_figure import PaperFigure, Report
+from stribeck.figures.job import FigureJob
+from stribeck.figures.style import DataArray, Dataset, Figure
 from stribeck.plot.phase_diagram import draw_phase_diagram, draw_phase_space
 from stribeck.quantities.outcome import Outcome
 from stribeck.regimes.phase_diagram import phase_diagram
 from stribeck.solver.solve_error import SolveError
 
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.figure import Figure
+TITLE = "Regimes over speed, load and roughness"
+CLAIM = (
+    "three regimes follow one another with speed; the formulas for both transitions separate them, and their lines "
+    "merge at large roughness."
+)
+SIZE = 13.0, 6.6
 
 LOADS = (0.01, 0.1)  # Load groups: the back and the front of the paper.
 
@@ -27,7 +29,8 @@ MAX_COMPARED_ROUGHNESS = 1e-3  # Roughness group up to which the lines are far e
 MERGING_FIELDS = ("roughness_without_minimum", "formula_roughness_without_minimum")
 
 
-def _compute(report: Report) -> xarray.Dataset:
+def compute(work: FigureJob) -> Dataset:
+    """Solve the phase diagram."""
     found = phase_diagram(
         load=LOADS,
         roughness=ROUGHNESSES,
@@ -36,7 +39,7 @@ def _compute(report: Report) -> xarray.Dataset:
         rtol=CURVE_RTOL,
         definition="published",
         merging=True,
-        on_point=report,
+        on_point=work.report,
     )
     if found.attrs["outcome"] == Outcome.INTERRUPTED.value:
         raise KeyboardInterrupt
@@ -52,7 +55,7 @@ def _compute(report: Report) -> xarray.Dataset:
     return found
 
 
-def _finding(data: xarray.Dataset) -> str:
+def _finding(data: Dataset) -> str:
     smooth = data.sel(roughness=slice(None, MAX_COMPARED_ROUGHNESS))
     corrected, printed = (
         smooth[f"{name}_speed_boundary_to_mixed"] / smooth.speed_at_5_percent_fluid for name in ("formula", "printed")
@@ -73,34 +76,23 @@ def _finding(data: xarray.Dataset) -> str:
     return finding
 
 
-def _span(ratio: xarray.DataArray) -> str:
+def _span(ratio: DataArray) -> str:
     return f"{float(ratio.min()):.2g} to {float(ratio.max()):.2g}"
 
 
-def _draw(data: xarray.Dataset) -> Figure:
-    figure = style.new_figure(data, 13.0, 6.6)
+def draw(figure: Figure, data: Dataset) -> None:
+    """Draw the space of states and a plane of it for each load."""
     grid = figure.add_gridspec(2, 2, width_ratios=[1.35, 1], height_ratios=[1, 1])
-    space: Any = figure.add_subplot(grid[:, 0], projection="3d")
+    space = figure.add_subplot(grid[:, 0], projection="3d")
     draw_phase_space(space, data)
     space.set_title("front: load 0.1, back: load 0.01; full lines and surfaces solved", loc="left", size=9.5, color=style.INK)
     for row, load in enumerate((LOADS[1], LOADS[0])):
         axes = figure.add_subplot(grid[row, 1])
         style.house_style(axes)
         draw_phase_diagram(axes, data, load)
-        style.letter(axes, "+", f"load {load:g}, with what the paper prints")
+        style.panel(axes, "+", f"load {load:g}, with what the paper prints")
     space.set_box_aspect((1.5, 1.1, 0.95), zoom=1.04)
     handles, labels = figure.axes[1].get_legend_handles_labels()
     # Our formulas have one style and one label for three lines.
     unique = dict(zip(labels, handles, strict=True))
-    style.legend(space, handles=list(unique.values()), labels=list(unique), loc="upper left", ncols=2)
-    return figure
-
-
-FIGURE = PaperFigure(
-    name="11",
-    title="Regimes over speed, load and roughness",
-    claim="three regimes follow one another with speed; the formulas for both transitions separate them, and their lines "
-    "merge at large roughness.",
-    compute=_compute,
-    draw=_draw,
-)
+    style.small_legend(space, handles=list(unique.values()), labels=list(unique), loc="upper left", ncols=2)

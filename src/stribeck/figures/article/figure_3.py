@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -11,18 +11,21 @@ from stribeck.contacts.groups import Groups
 from stribeck.curves.regime import Transition
 from stribeck.curves.result import StribeckCurve
 from stribeck.figures import style
-from stribeck.figures.build import FigureJob, column, dataset
-from stribeck.figures.paper_figure import PaperFigure, Report
+from stribeck.figures.job import FigureJob
+from stribeck.figures.style import Axes, Dataset, Figure
 
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+TITLE = "Stribeck curve and the space of states"
+CLAIM = (
+    "boundary lubrication for Hersey numbers below 1e-7, mixed from 1e-7 to 3e-5, hydrodynamic above; "
+    "the smooth and the quasistatic limit are planes that meet in the line of Hertz."
+)
+SIZE = 11.5, 6.0
 
 LOAD, ROUGHNESS = 0.1, 1e-4  # Groups of the curve.
 SPEED_RANGE = 1e-8, 0.1  # Speed groups of the curves.
 # Roughness groups at which panel (b) shows where the regimes end, at the same load.
 MAPPED_ROUGHNESSES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
+STEPS = len(MAPPED_ROUGHNESSES) + 2
 
 MARK_NAMES: dict[str, str] = {
     Transition.BOUNDARY_END: "boundary_end",
@@ -35,36 +38,31 @@ MARK_NAMES: dict[str, str] = {
 BOX_LOW, BOX_HIGH = (-10.0, -3.0, -8.0), (1.5, 0.0, -1.0)
 
 
-def _compute(report: Report) -> xarray.Dataset:
-    work = FigureJob(report, steps=len(MAPPED_ROUGHNESSES) + 2)
+def compute(work: FigureJob) -> Dataset:
+    """Solve the curve by both definitions of friction, and where the regimes end."""
     curve = work.curve(load=LOAD, roughness=ROUGHNESS, speed=SPEED_RANGE, points=141)
     balanced = work.curve(load=LOAD, roughness=ROUGHNESS, speed=SPEED_RANGE, points=141, definition="balanced")
-    ends = {name: [] for name in MARK_NAMES.values()}  # type: dict[str, list[float]]
-    for roughness in MAPPED_ROUGHNESSES:
-        found = _marks(work.curve(load=LOAD, roughness=roughness, points=61))
-        for name in ends:
-            ends[name].append(found.get(name, (math.nan, math.nan))[0])
-    speed, rough = "speed", "roughness"
+    found = [_marks(work.curve(load=LOAD, roughness=roughness, points=61)) for roughness in MAPPED_ROUGHNESSES]
     marks, fair = _marks(curve), _marks(balanced)
     hersey = float(Groups(1.0, LOAD, ROUGHNESS).hersey_number())
-    variables = {
-        "hersey_number": column(speed, curve.hersey_number, "Hersey number eta U/F_N for beta = 1"),
-        "friction_published": column(speed, curve.friction, "friction coefficient, definition published"),
-        "friction_balanced": column(speed, balanced.friction, "friction coefficient, definition balanced"),
-        "friction_asperities": column(
-            speed, curve.friction.asperities, "contribution of asperities to the friction coefficient"
-        ),
-        "viscous_published": column(speed, curve.friction.fluid, "part from the fluid, definition published"),
-        "viscous_balanced": column(speed, balanced.friction.fluid, "part from the fluid, definition balanced"),
-        "contact_load_share": column(speed, curve.observable("contact_load_share"), "part of the load on asperities"),
-    }
-    variables |= {
-        f"{name}_speed": column(rough, ends[name], f"speed group where {label}, load {LOAD}")
-        for label, name in MARK_NAMES.items()
-    }
+    work.along(speed=(curve.values, "speed group lambda"), roughness=(MAPPED_ROUGHNESSES, "roughness group h_rms"))
+    work.give(
+        "speed",
+        hersey_number=(curve.hersey_number, "Hersey number eta U/F_N for beta = 1"),
+        friction_published=(curve.friction, "friction coefficient, definition published"),
+        friction_balanced=(balanced.friction, "friction coefficient, definition balanced"),
+        friction_asperities=(curve.friction.asperities, "contribution of asperities to the friction coefficient"),
+        viscous_published=(curve.friction.fluid, "part from the fluid, definition published"),
+        viscous_balanced=(balanced.friction.fluid, "part from the fluid, definition balanced"),
+        contact_load_share=(curve.observable("contact_load_share"), "part of the load on asperities"),
+    )
+    for label, name in MARK_NAMES.items():
+        speeds = [each.get(name, (math.nan, math.nan))[0] for each in found]
+        work.give("roughness", **{f"{name}_speed": (speeds, f"speed group where {label}, load {LOAD}")})
     for name, (value, friction) in marks.items():
-        variables[f"{name}_hersey"] = column((), hersey * value, f"Hersey number of the {name.replace('_', ' ')}")
-        variables[f"{name}_friction"] = column((), friction, f"friction coefficient at the {name.replace('_', ' ')}")
+        words = name.replace("_", " ")
+        number, coefficient = f"Hersey number of the {words}", f"friction coefficient at the {words}"
+        work.give((), **{f"{name}_hersey": (hersey * value, number), f"{name}_friction": (friction, coefficient)})
     excess = float(curve.friction.max()) - 1
     finding = (
         f"boundary up to a Hersey number of {hersey * marks['boundary_end'][0]:.2g}, mixed up to "
@@ -73,11 +71,7 @@ def _compute(report: Report) -> xarray.Dataset:
         f"The printed friction exceeds mu_0 by {100 * excess:.1f} % before it falls, since its fluid part is up to "
         f"{float((curve.friction.fluid / balanced.friction.fluid).max()):.0f} times that of the force balance."
     )
-    coords = {
-        speed: column(speed, curve.values, "speed group lambda"),
-        rough: column(rough, MAPPED_ROUGHNESSES, "roughness group h_rms"),
-    }
-    return dataset(variables, coords, finding=finding, load_group=LOAD, roughness_group=ROUGHNESS, **work.attributes)
+    return work.dataset(finding, load_group=LOAD, roughness_group=ROUGHNESS)
 
 
 def _marks(curve: StribeckCurve) -> dict[str, tuple[float, float]]:
@@ -85,46 +79,40 @@ def _marks(curve: StribeckCurve) -> dict[str, tuple[float, float]]:
     return {MARK_NAMES[mark.name]: (mark.value, mark.friction) for mark in curve.transitions if mark.name in MARK_NAMES}
 
 
-def _draw(data: xarray.Dataset) -> Figure:
-    figure = style.new_figure(data, 11.5, 6.0)
+def draw(figure: Figure, data: Dataset) -> None:
+    """Draw the curve, its fluid part, and the space of states."""
     grid = figure.add_gridspec(2, 2, height_ratios=[1.35, 1], width_ratios=[1, 1.05])
     above, below = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[1, 0])
-    box: Any = figure.add_subplot(grid[:, 1], projection="3d", computed_zorder=False)
     _draw_curve(above, data)
     _draw_viscous(below, data)
-    _draw_space(box, data)
-    return figure
+    _draw_space(figure.add_subplot(grid[:, 1], projection="3d", computed_zorder=False), data)
 
 
-def _draw_curve(axes: Axes, data: xarray.Dataset) -> None:
+def _draw_curve(axes: Axes, data: Dataset) -> None:
     style.house_style(axes)
     x = data.hersey_number
     axes.loglog(x, data.friction_published, color=style.INK, lw=2.2, label="as published")
     axes.plot(x, data.friction_balanced, color=style.MARK, lw=1.4, ls=style.DASHED, label="by the balance of forces")
     axes.plot(x, data.friction_asperities, color=style.CONTACT, lw=1.2, ls=style.DOTTED, label="part from asperities")
     axes.plot(data.minimum_hersey, data.minimum_friction, "o", color=style.INK, ms=7, mec="white", label="minimum friction")
-    axes.set(ylim=(8e-3, 4), ylabel=r"friction coefficient $\mu$")
     axes.tick_params(labelbottom=False)
     load, roughness = (style.power(data.attrs[f"{name}_group"]) for name in ("load", "roughness"))
-    style.letter(
-        axes, "a", rf"Stribeck curve, $\bar F_N$ = {load}, $\bar h_\mathrm{{rms}}$ = {roughness}, $\beta = \mu_0 = 1$"
-    )
-    style.legend(axes, loc="lower left")
+    text = rf"Stribeck curve, $\bar F_N$ = {load}, $\bar h_\mathrm{{rms}}$ = {roughness}, $\beta = \mu_0 = 1$"
+    style.panel(axes, "a", text, {"loc": "lower left"}, ylim=(8e-3, 4), ylabel=r"friction coefficient $\mu$")
     _shade(axes, data, named=True)
 
 
-def _draw_viscous(axes: Axes, data: xarray.Dataset) -> None:
+def _draw_viscous(axes: Axes, data: Dataset) -> None:
     style.house_style(axes)
     x = data.hersey_number
     axes.loglog(x, data.viscous_published, color=style.INK, lw=2.0, label="as published: without the contact pressure")
     axes.plot(x, data.viscous_balanced, color=style.MARK, lw=1.4, ls=style.DASHED, label="by the balance of forces")
-    axes.set(xlabel=r"Hersey number $\eta U/F_N$", ylabel=r"fluid part $\mu_f$", ylim=(1e-7, 1))
-    style.letter(axes, "+", "the friction of the fluid by both definitions")
-    style.legend(axes, loc="lower right")
+    settings = {"xlabel": r"Hersey number $\eta U/F_N$", "ylabel": r"fluid part $\mu_f$", "ylim": (1e-7, 1)}
+    style.panel(axes, "+", "the friction of the fluid by both definitions", {"loc": "lower right"}, **settings)
     _shade(axes, data, named=False)
 
 
-def _shade(axes: Axes, data: xarray.Dataset, named: bool) -> None:
+def _shade(axes: Axes, data: Dataset, named: bool) -> None:
     x = data.hersey_number.values
     edges = [x[0], float(data.boundary_end_hersey), float(data.hydrodynamic_begin_hersey), x[-1]]
     axes.set_xlim(x[0], x[-1])
@@ -138,7 +126,7 @@ def _shade(axes: Axes, data: xarray.Dataset, named: bool) -> None:
             )  # fmt: skip
 
 
-def _draw_space(axes: Any, data: xarray.Dataset) -> None:
+def _draw_space(axes: Any, data: Dataset) -> None:
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
     (s0, f0, r0), (s1, f1, r1) = BOX_LOW, BOX_HIGH
@@ -174,14 +162,4 @@ def _draw_space(axes: Any, data: xarray.Dataset) -> None:
     axes.tick_params(labelsize=8, colors=style.INK)
     axes.view_init(elev=22, azim=-57)
     axes.set_box_aspect((1.25, 1, 0.95), zoom=0.87)
-    style.letter(axes, "b", "space of states, with the regimes solved at the load of (a)")
-
-
-FIGURE = PaperFigure(
-    name="3",
-    title="Stribeck curve and the space of states",
-    claim="boundary lubrication for Hersey numbers below 1e-7, mixed from 1e-7 to 3e-5, hydrodynamic above; "
-    "the smooth and the quasistatic limit are planes that meet in the line of Hertz.",
-    compute=_compute,
-    draw=_draw,
-)
+    style.panel(axes, "b", "space of states, with the regimes solved at the load of (a)")

@@ -2,31 +2,32 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
 from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contacts.groups import Groups
 from stribeck.figures import style
-from stribeck.figures.build import FigureJob, column, dataset
-from stribeck.figures.paper_figure import PaperFigure, Report
+from stribeck.figures.job import FigureJob
+from stribeck.figures.style import Axes, Dataset, Figure
 
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+TITLE = "Film and friction in the smooth limit"
+CLAIM = (
+    "the film is well described by the laws of both limits, and the root of the sum of squares of both laws of friction "
+    "provides an excellent description, including in the transition region."
+)
+SIZE = 11.0, 6.4
 
 SPEED_RANGE = 1e-8, 1e4  # Speed groups of the curves.
 LOAD = 0.1  # Load group, on which neither films nor friction over beta F**(1/2) depend.
 
-# Label, colour and dashes of each law of the film.
+# Label, colour and dashes of each law.
 FILM_LAWS = {
     "film_large": ("slow: $c \\lambda^{3/5}$, $c$ = 0.44583", style.FLUID, style.DASHED),
     "film_small": (r"fast: $\lambda^{2/3}/24^{1/3}$", style.GREEN, style.DASHED),
     "film_uniform": ("ours, for all speeds", style.MARK, "-"),
 }
-# Label, colour and dashes of each law of friction.
 FRICTION_LAWS = {
     "friction_large": (r"slow: $\propto \lambda^{2/5}$", style.FLUID, style.DASHED),
     "friction_small": (r"fast: $\propto \lambda^{2/3}$", style.GREEN, style.DASHED),
@@ -35,8 +36,8 @@ FRICTION_LAWS = {
 }
 
 
-def _compute(report: Report) -> xarray.Dataset:
-    work = FigureJob(report, steps=1)
+def compute(work: FigureJob) -> Dataset:
+    """Solve the curve and compare it with the laws."""
     curve = work.curve(load=LOAD, roughness=0.0, speed=SPEED_RANGE, points=121)
     film = curve.observable("central_gap")
     friction = curve.friction.fluid / LOAD**0.5
@@ -63,59 +64,36 @@ def _compute(report: Report) -> xarray.Dataset:
         f"low already at 1e-4, the root of squares up to {-100 * squares[place]:.1f} % low (at {curve.values[place]:.1g}) and "
         f"{100 * squares.max():.1f} % high. Our uniform formulas are within {100 * ours:.2g} %."
     )
-    variables = {
-        "central_gap": column("speed", film, "central gap over u_Hz"),
-        "friction": column("speed", friction, "friction coefficient over beta F^(1/2), all from the fluid"),
-    }
+    work.along(speed=(curve.values, "speed group lambda"))
+    friction_words = "friction coefficient over beta F^(1/2), all from the fluid"
+    work.give("speed", central_gap=(film, "central gap over u_Hz"), friction=(friction, friction_words))
     for name, law in laws.items():
-        variables[name] = column("speed", law, f"the law {name.replace('_', ' ')}, in the scale of what it predicts")
-        variables[f"{name}_error"] = column("speed", errors[name], f"relative error of {name} against the solver")
-    coords = {"speed": column("speed", curve.values, "speed group lambda")}
-    return dataset(variables, coords, finding=finding, load_group=LOAD, **work.attributes)
+        words = f"the law {name.replace('_', ' ')}, in the scale of what it predicts"
+        error = errors[name], f"relative error of {name} against the solver"
+        work.give("speed", **{name: (law, words), f"{name}_error": error})
+    return work.dataset(finding, load_group=LOAD)
 
 
-def _draw(data: xarray.Dataset) -> Figure:
-    figure = style.new_figure(data, 11.0, 6.4)
-    a, b, film_errors, friction_errors = style.panels(figure, 2, 2, height_ratios=[1.7, 1])
-    _draw_laws(a, data, "central_gap", FILM_LAWS)
-    a.set_ylabel(r"$h(0)/u_\mathrm{Hz}$")
-    style.letter(a, "a", "central film")
-    _draw_laws(b, data, "friction", FRICTION_LAWS)
-    b.set_ylabel(r"$\mu_f / (\beta \bar F_N^{1/2})$")
-    style.letter(b, "b", "friction")
-    _draw_errors(film_errors, data, FILM_LAWS)
+def draw(figure: Figure, data: Dataset) -> None:
+    """Draw film and friction over the speed, and the errors of their laws."""
+    a, b, of_film, of_friction = style.panels(figure, 2, 2, height_ratios=[1.7, 1])
+    _draw_laws(a, of_film, data, "central_gap", FILM_LAWS)
+    _draw_laws(b, of_friction, data, "friction", FRICTION_LAWS)
+    style.panel(a, "a", "central film", {"loc": "upper left"}, ylabel=r"$h(0)/u_\mathrm{Hz}$")
+    style.panel(b, "b", "friction", {"loc": "upper left"}, ylabel=r"$\mu_f / (\beta \bar F_N^{1/2})$")
     printed = 100 * data.film_large_printed_error
-    film_errors.plot(data.speed, printed, color=style.CONTACT, lw=1.2, ls=style.DOTTED, label="printed 0.44")
-    style.legend(film_errors, loc="lower left")
-    style.letter(film_errors, "+", "error of the laws of the film")
-    _draw_errors(friction_errors, data, FRICTION_LAWS)
-    style.letter(friction_errors, "+", "error of the laws of friction")
-    return figure
+    of_film.plot(data.speed, printed, color=style.CONTACT, lw=1.2, ls=style.DOTTED, label="printed 0.44")
+    style.panel(of_film, "+", "error of the laws of the film", {"loc": "lower left"})
+    style.panel(of_friction, "+", "error of the laws of friction")
 
 
-def _draw_laws(axes: Axes, data: xarray.Dataset, solved: str, laws: dict[str, tuple[str, str, object]]) -> None:
-    every = slice(None, None, 5)
+def _draw_laws(axes: Axes, below: Axes, data: Dataset, solved: str, laws: dict[str, tuple[str, str, Any]]) -> None:
+    every, ends = slice(None, None, 5), (float(data.speed[0]), float(data.speed[-1]))
     axes.loglog(data.speed[every], data[solved][every], "o", color=style.INK, ms=4, mfc="white", label="solved", zorder=4)
-    for name, (label, colour, dashes) in laws.items():
-        axes.plot(data.speed, data[name], color=colour, ls=dashes, lw=1.5, label=label)
+    style.lines(axes, data.speed, data, laws)
     axes.tick_params(labelbottom=False)
-    axes.set_xlim(float(data.speed[0]), float(data.speed[-1]))
-    style.legend(axes, loc="upper left")
-
-
-def _draw_errors(axes: Axes, data: xarray.Dataset, laws: dict[str, tuple[str, str, object]]) -> None:
-    axes.axhline(0.0, color=style.GREY, lw=0.8)
+    axes.set_xlim(*ends)
+    below.axhline(0.0, color=style.GREY, lw=0.8)
     for name, (_, colour, dashes) in laws.items():
-        axes.semilogx(data.speed, 100 * data[f"{name}_error"], color=colour, ls=dashes, lw=1.5)
-    axes.set(xlabel=r"speed $\lambda$", ylabel="law over solver − 1 (%)", ylim=(-28, 6))
-    axes.set_xlim(float(data.speed[0]), float(data.speed[-1]))
-
-
-FIGURE = PaperFigure(
-    name="5",
-    title="Film and friction in the smooth limit",
-    claim="the film is well described by the laws of both limits, and the root of the sum of squares of both laws of friction "
-    "provides an excellent description, including in the transition region.",
-    compute=_compute,
-    draw=_draw,
-)
+        below.plot(data.speed, 100 * data[f"{name}_error"], color=colour, ls=dashes, lw=1.5)
+    below.set(xscale="log", xlabel=r"speed $\lambda$", ylabel="law over solver − 1 (%)", ylim=(-28, 6), xlim=ends)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,29 +16,38 @@ from stribeck.figures.article.stribeck_cases import (
     LOADS,
     REPORTED_LAMBDA,
     ROUGHNESSES,
-    case_coords,
     draw_reports,
     drawn_cases,
+    give_cases,
+    give_reports,
     over,
-    report_variables,
+    say_what_is_missing,
     solved_cases,
 )
-from stribeck.figures.build import FigureJob, column, dataset
-from stribeck.figures.paper_figure import PaperFigure, Report
+from stribeck.figures.job import FigureJob
+from stribeck.figures.style import Axes, Dataset, Figure
 
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+TITLE = "Stribeck curves of several loads and roughnesses"
+CLAIM = (
+    "the hydrodynamic branches spread slightly over the Hersey number, with slopes 2/5 and 2/3, and collapse onto the "
+    "line y = x over mu_f,th; smoother surfaces and larger loads shift the transition to slower speeds and less friction."
+)
+SIZE = 13.0, 4.9
+STEPS = len(CASES)
 
 SPEED_RANGE = 1e-8, 1e3  # Speed groups of the curves.
 PREDICTED_ROUGHNESS_RANGE = 1e-8, 1e-2  # Roughness groups over which Lambda is predicted.
 
+CURVES_MISSING = (
+    "The paper draws curves of Bongaerts 2007 here, whose data\n"
+    "are not public to us: bars show the ranges of $\\Lambda$ that\nthe paper quotes, at no roughness in particular."
+)
+
 MAX_SOLID_FRICTION_SHARE = 1e-3  # Share of friction from asperities below which a state counts as hydrodynamic here.
 
 
-def _compute(report: Report) -> xarray.Dataset:
-    work = FigureJob(report, steps=len(CASES))
+def compute(work: FigureJob) -> Dataset:
+    """Solve the curves and find their minima."""
     curves = solved_cases(work, SPEED_RANGE, points=67)
     friction, hersey = over(curves, "friction"), over(curves, "hersey_number")
     law = over(curves, "hydrodynamic_friction")
@@ -68,28 +76,27 @@ def _compute(report: Report) -> xarray.Dataset:
         f"load {CASES[-1][0]} with roughness {CASES[-1][1]} has no minimum below its plateau. The paper names only load 0.1 "
         "with roughness 1e-4 and prints no table of the others."
     )
-    grid = "case", "speed"
-    variables = {
-        "hersey_number": column(grid, hersey, "Hersey number eta U/F_N for beta = 1"),
-        "friction": column(grid, friction, "friction coefficient, definition published"),
-        "hydrodynamic_friction": column(grid, law, "friction of smooth surfaces by the root of squares of the paper"),
-        "uniform_friction": column(grid, uniform, "friction of smooth surfaces by our uniform law"),
-        "distance": column(grid, off, "friction over hydrodynamic_friction - 1 where asperities cause < 0.1 % of it"),
-        "uniform_distance": column(grid, ours, "the same over uniform_friction"),
-        "hersey_spread": column((), spread, "largest ratio of hydrodynamic frictions at one Hersey number"),
-        "slope": column("speed", slopes, "d ln friction / d ln Hersey number of the first case, where hydrodynamic"),
-        "predicted_separation": column(("predicted_load", "predicted_roughness"), predicted, "Lambda at the minimum, law"),
-    }
-    variables |= {name: column("case", values, f"{name.replace('_', ' ')} of friction") for name, values in lowest.items()}
-    coords = case_coords() | {
-        "speed": column("speed", curves[0].values, "speed group lambda"),
-        "predicted_load": column("predicted_load", LOADS, "load group"),
-        "predicted_roughness": column(
-            "predicted_roughness", np.geomspace(*PREDICTED_ROUGHNESS_RANGE, 61), "roughness group h_rms"
-        ),
-    }
-    reports = "; ".join(REPORTED_LAMBDA)
-    return dataset(variables | report_variables(), coords, finding=finding, reports=reports, **work.attributes)
+    work.along(
+        speed=(curves[0].values, "speed group lambda"),
+        predicted_load=(LOADS, "load group"),
+        predicted_roughness=(np.geomspace(*PREDICTED_ROUGHNESS_RANGE, 61), "roughness group h_rms"),
+    )
+    work.give(
+        ("case", "speed"),
+        hersey_number=(hersey, "Hersey number eta U/F_N for beta = 1"),
+        friction=(friction, "friction coefficient, definition published"),
+        hydrodynamic_friction=(law, "friction of smooth surfaces by the root of squares of the paper"),
+        uniform_friction=(uniform, "friction of smooth surfaces by our uniform law"),
+        distance=(off, "friction over hydrodynamic_friction - 1 where asperities cause < 0.1 % of it"),
+        uniform_distance=(ours, "the same over uniform_friction"),
+    )
+    work.give((), hersey_spread=(spread, "largest ratio of hydrodynamic frictions at one Hersey number"))
+    work.give("speed", slope=(slopes, "d ln friction / d ln Hersey number of the first case, where hydrodynamic"))
+    work.give(("predicted_load", "predicted_roughness"), predicted_separation=(predicted, "Lambda at the minimum, law"))
+    work.give("case", **{name: (values, f"{name.replace('_', ' ')} of friction") for name, values in lowest.items()})
+    give_cases(work)
+    give_reports(work)
+    return work.dataset(finding, reports="; ".join(REPORTED_LAMBDA))
 
 
 def _spread(hersey: Array, friction: Array, fluid_film: Flags) -> float:
@@ -102,26 +109,25 @@ def _spread(hersey: Array, friction: Array, fluid_film: Flags) -> float:
     return float(np.exp(np.abs(difference).max()))
 
 
-def _draw(data: xarray.Dataset) -> Figure:
-    figure = style.new_figure(data, 13.0, 4.9)
+def draw(figure: Figure, data: Dataset) -> None:
+    """Draw the curves over the Hersey number and over the friction of smooth surfaces, and Lambda at their minima."""
     a, b, c = style.panels(figure, 1, 3, width_ratios=[1, 1, 1.05])
+    friction = r"friction coefficient $\mu$"
     _draw_curves(a, data, "hersey_number", "minimum_hersey")
-    a.set(xlabel=r"Hersey number $\eta U/F_N$", ylabel=r"friction coefficient $\mu$", xlim=(1e-9, 30), ylim=(3e-3, 150))
-    style.letter(a, "a", r"over the Hersey number, $\beta = \mu_0 = 1$")
-    style.legend(a, loc="upper left", title=r"$\bar F_N$,  $\bar h_\mathrm{rms}$", fontsize=7.5)
+    legend = {"loc": "upper left", "title": r"$\bar F_N$,  $\bar h_\mathrm{rms}$", "fontsize": 7.5}
+    over_hersey = {"xlabel": r"Hersey number $\eta U/F_N$", "ylabel": friction, "xlim": (1e-9, 30), "ylim": (3e-3, 150)}
+    style.panel(a, "a", r"over the Hersey number, $\beta = \mu_0 = 1$", legend, **over_hersey)
     style.slope(a, 3e-5, 5e-3, 0.4, "2/5")
     style.slope(a, 0.3, 2.2, 2 / 3, "2/3")
     line = np.array([1e-3, 200])
-    b.plot(line, line, color=style.INK, lw=1.1, ls=style.DASHED, label="$y = x$")
+    style.limit(b, line, line, "$y = x$", lw=1.1)
     _draw_curves(b, data, "hydrodynamic_friction", "minimum_law", labels=False)
-    b.set(xlabel=r"$\mu_{f,\mathrm{th}}$", ylabel=r"friction coefficient $\mu$", xlim=(3e-5, 150), ylim=(3e-3, 150))
-    style.letter(b, "b", "over the friction of smooth surfaces")
-    style.legend(b, loc="upper left")
+    over_smooth = {"xlabel": r"$\mu_{f,\mathrm{th}}$", "ylabel": friction, "xlim": (3e-5, 150), "ylim": (3e-3, 150)}
+    style.panel(b, "b", "over the friction of smooth surfaces", {"loc": "upper left"}, **over_smooth)
     _draw_ratios(c, data)
-    return figure
 
 
-def _draw_curves(axes: Axes, data: xarray.Dataset, x: str, minimum: str, labels: bool = True) -> None:
+def _draw_curves(axes: Axes, data: Dataset, x: str, minimum: str, labels: bool = True) -> None:
     for i, look, label in drawn_cases(data):
         axes.loglog(data[x][i], data.friction[i], markevery=2, label=label if labels else None, **look)
         if np.isfinite(data[minimum].values[i]):
@@ -129,7 +135,7 @@ def _draw_curves(axes: Axes, data: xarray.Dataset, x: str, minimum: str, labels:
             axes.plot(data[minimum][i], data.minimum_friction[i], "v", color=style.MARK, ms=5, zorder=5, label=words, ls="")
 
 
-def _draw_ratios(axes: Axes, data: xarray.Dataset) -> None:
+def _draw_ratios(axes: Axes, data: Dataset) -> None:
     for load, ratios, dashes in zip(
         data.predicted_load.values, data.predicted_separation.values, (style.DASHED, style.DOTTED), strict=True
     ):
@@ -137,25 +143,9 @@ def _draw_ratios(axes: Axes, data: xarray.Dataset) -> None:
     for i, look, _ in drawn_cases(data):
         axes.plot(data["roughness"][i], data.separation_at_minimum[i], **look | {"ms": 7})
     draw_reports(axes, data, 0.66)
-    axes.set(xlabel=r"roughness $\bar h_\mathrm{rms}$", ylabel=r"$\Lambda$ at the minimum of friction", ylim=(0.3, 3e5))
     axes.set_xlim(1e-8, 10 ** (-8 + 6 / 0.66))
-    axes.set_xticks([1e-8, 1e-6, 1e-4, 1e-2])
-    axes.minorticks_off()
-    axes.text(
-        0.03, 0.97,
-        "The paper draws curves of Bongaerts 2007 here, whose data\n"
-        "are not public to us: bars show the ranges of $\\Lambda$ that\nthe paper quotes, at no roughness in particular.",
-        transform=axes.transAxes, size=7.5, color=style.GREY, va="top",
-    )  # fmt: skip
-    style.letter(axes, "c", r"instead of measured curves: $\Lambda$, solved and reported")
-    style.legend(axes, loc="lower left", bbox_to_anchor=(0.0, 0.52))
-
-
-FIGURE = PaperFigure(
-    name="7",
-    title="Stribeck curves of several loads and roughnesses",
-    claim="the hydrodynamic branches spread slightly over the Hersey number, with slopes 2/5 and 2/3, and collapse onto the "
-    "line y = x over mu_f,th; smoother surfaces and larger loads shift the transition to slower speeds and less friction.",
-    compute=_compute,
-    draw=_draw,
-)
+    say_what_is_missing(axes, CURVES_MISSING)
+    legend = {"loc": "lower left", "bbox_to_anchor": (0.0, 0.52)}
+    x, y = r"roughness $\bar h_\mathrm{rms}$", r"$\Lambda$ at the minimum of friction"
+    text = r"instead of measured curves: $\Lambda$, solved and reported"
+    style.panel(axes, "c", text, legend, xlabel=x, ylabel=y, ylim=(0.3, 3e5))

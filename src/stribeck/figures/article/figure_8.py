@@ -2,34 +2,33 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from stribeck.asymptotics.rough import boundary
 from stribeck.contacts.groups import Groups
 from stribeck.figures import style
-from stribeck.figures.build import FigureJob, column, dataset
-from stribeck.figures.paper_figure import PaperFigure, Report
+from stribeck.figures.job import FigureJob
+from stribeck.figures.style import Axes, Dataset, Figure
 from stribeck.solids import hertz
 
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+TITLE = "Profiles in the mixed-lubrication regime"
+CLAIM = (
+    "with speed, gap and fluid pressure gradually rise and the contact pressure falls, from the rough-contact gap "
+    "under Hertz pressure on the asperities to Hertz pressure in the fluid."
+)
+SIZE = 11.0, 7.0
 
 LOAD, ROUGHNESS = 0.1, 1e-4  # Groups of the profiles.
 # Speed groups of the profiles, 3.16e-6 to 1e-3 as in the paper, in steps of half a decade.
 SPEEDS = tuple(10.0 ** (exponent / 2) for exponent in range(-11, -5))
+STEPS = len(SPEEDS) + 2
 
 CURVE_SPEED_RANGE = 1e-8, 0.1  # Speed groups of the curve.
 CORE_HALF_WIDTH = 0.9  # Half-width [a] in which profiles are compared with the limits; the layers at the edges lie outside.
 
-CYAN = "#56b4e9"
 
-
-def _compute(report: Report) -> xarray.Dataset:
-    work = FigureJob(report, steps=len(SPEEDS) + 2)
+def compute(work: FigureJob) -> Dataset:
+    """Solve the curve and the profiles, and compare these with both limits."""
     curve = work.curve(load=LOAD, roughness=ROUGHNESS, speed=CURVE_SPEED_RANGE, points=71)
     states = [work.solve(speed, LOAD, ROUGHNESS) for speed in SPEEDS]
     smooth = work.solve(SPEEDS[-1], LOAD, 0.0)
@@ -61,78 +60,71 @@ def _compute(report: Report) -> xarray.Dataset:
         f"holds the gap within {100 * furthest['film_distance'][-1]:.1g} % of the smooth film. The contact pressure falls as "
         f"a whole, not everywhere: at x = {x[place]:.2f} a it grows by {rise[step, place]:.2f} p_Hz between two of the speeds."
     )
-    variables = {
-        "hersey_number": column("curve_speed", curve.hersey_number, "Hersey number eta U/F_N of the curve for beta = 1"),
-        "friction": column("curve_speed", curve.friction, "friction coefficient, definition published"),
-        "profile_hersey": column("speed", [state.groups.hersey_number() for state in states], "Hersey number of the profiles"),
-        "profile_friction": column(
-            "speed", [state.friction(definition="published").total for state in states], "friction coefficient there"
-        ),
-        "fluid_load_share": column("speed", shares, "part of the load on the fluid"),
-        "central_gap": column("speed", [state.central_gap for state in states], "gap at x = 0 over u_Hz"),
-        "gap": column(("speed", "x"), gaps, "gap over u_Hz"),
-        "fluid_pressure": column(("speed", "x"), fluid, "fluid pressure over p_Hz"),
-        "contact_pressure": column(("speed", "x"), contact, "contact pressure over p_Hz"),
-        "rough_contact": column("inside", rough_contact, "rough-contact gap over u_Hz"),
-        "hertz_pressure": column("x", dry, "Hertz pressure over p_Hz"),
-    }
-    for name, (_, limit) in distances.items():
-        variables[name] = column("speed", furthest[name], f"largest distance from the {limit}, for |x| < {CORE_HALF_WIDTH} a")
-    coords = {
-        "curve_speed": column("curve_speed", curve.values, "speed group lambda of the curve"),
-        "speed": column("speed", SPEEDS, "speed group lambda of the profiles"),
-        "x": column("x", x, "position over a"),
-        "inside": column("inside", inside, "position over a, inside the contact"),
-    }
-    return dataset(variables, coords, finding=finding, load_group=LOAD, roughness_group=ROUGHNESS, **work.attributes)
+    work.along(
+        curve_speed=(curve.values, "speed group lambda of the curve"),
+        speed=(SPEEDS, "speed group lambda of the profiles"),
+        x=(x, "position over a"),
+        inside=(inside, "position over a, inside the contact"),
+    )
+    work.give(
+        "curve_speed",
+        hersey_number=(curve.hersey_number, "Hersey number eta U/F_N of the curve for beta = 1"),
+        friction=(curve.friction, "friction coefficient, definition published"),
+    )
+    friction = [state.friction(definition="published").total for state in states]
+    work.give(
+        "speed",
+        profile_hersey=([state.groups.hersey_number() for state in states], "Hersey number of the profiles"),
+        profile_friction=(friction, "friction coefficient there"),
+        fluid_load_share=(shares, "part of the load on the fluid"),
+        central_gap=([state.central_gap for state in states], "gap at x = 0 over u_Hz"),
+    )
+    work.give(
+        ("speed", "x"),
+        gap=(gaps, "gap over u_Hz"),
+        fluid_pressure=(fluid, "fluid pressure over p_Hz"),
+        contact_pressure=(contact, "contact pressure over p_Hz"),
+    )
+    work.give("inside", rough_contact=(rough_contact, "rough-contact gap over u_Hz"))
+    work.give("x", hertz_pressure=(dry, "Hertz pressure over p_Hz"))
+    for name, (_, what) in distances.items():
+        words = f"largest distance from the {what}, for |x| < {CORE_HALF_WIDTH} a"
+        work.give("speed", **{name: (furthest[name], words)})
+    return work.dataset(finding, load_group=LOAD, roughness_group=ROUGHNESS)
 
 
-def _draw(data: xarray.Dataset) -> Figure:
-    figure = style.new_figure(data, 11.0, 7.0)
+def draw(figure: Figure, data: Dataset) -> None:
+    """Draw the curve, and gap and pressures of the profiles."""
     a, b, c, d = style.panels(figure, 2, 2)
-    colours = style.sequence(len(data.speed))
-    _draw_curve(a, data, colours)
+    _draw_curve(a, data)
     for axes, name in ((b, "gap"), (c, "fluid_pressure"), (d, "contact_pressure")):
-        for colour, speed, values in zip(colours, data.speed.values, data[name].values, strict=True):
-            axes.plot(data.x, values, color=colour, lw=1.5, label=style.power(speed))
-        axes.set(xlabel="$x/a$", xlim=(-1.6, 1.6))
-    b.plot(data.inside, data.rough_contact, color=CYAN, lw=1.8, ls=style.DASHED, label="rough contact")
-    b.set(yscale="log", ylabel=r"$h/u_\mathrm{Hz}$", ylim=(8e-4, 0.8))
-    style.letter(b, "b", "gap")
-    style.legend(b, loc="upper center", title=r"speed $\lambda$", ncols=2)
+        style.steps(axes, data.x, data[name], data.speed, lw=1.5)
+        axes.set_xlabel("$x/a$")
+    style.limit(b, data.inside, data.rough_contact, "rough contact", color=style.CYAN, lw=1.8)
+    legend = {"loc": "upper center", "title": r"speed $\lambda$", "ncols": 2}
+    style.panel(b, "b", "gap", legend, yscale="log", ylabel=r"$h/u_\mathrm{Hz}$", ylim=(8e-4, 0.8))
     for axes, which, text, kind in ((c, "c", "fluid pressure", "f"), (d, "d", "contact pressure", "c")):
-        axes.plot(data.x, data.hertz_pressure, color=style.INK, lw=1.2, ls=style.DASHED, label="Hertz")
-        axes.set(ylabel=rf"$p_{kind}/p_\mathrm{{Hz}}$", ylim=(-0.24, 1.1))
+        style.limit(axes, data.x, data.hertz_pressure, "Hertz")
         axes.axhline(0.0, color=style.GREY, lw=0.6)
-        style.letter(axes, which, text)
+        legend = {"loc": "upper left", "handles": axes.lines[-2:-1]}
+        style.panel(axes, which, text, legend, ylabel=rf"$p_{kind}/p_\mathrm{{Hz}}$", ylim=(-0.24, 1.1))
     low = float(data.fluid_pressure.min())
     c.annotate(
         "negative:\nno cavitation", (1.05, low), (1.56, 0.3), size=8, color=style.GREY, ha="right",
         arrowprops={"arrowstyle": "->", "color": style.GREY, "lw": 0.8},
     )  # fmt: skip
-    style.legend(c, loc="upper left", handles=c.lines[-2:-1])
-    style.legend(d, loc="upper left", handles=d.lines[-2:-1])
-    return figure
 
 
-def _draw_curve(axes: Axes, data: xarray.Dataset, colours: list[str]) -> None:
+def _draw_curve(axes: Axes, data: Dataset) -> None:
     axes.loglog(data.hersey_number, data.friction, color=style.INK, lw=1.2)
     every = slice(None, None, 3)
     axes.plot(data.hersey_number[every], data.friction[every], "o", color=style.INK, ms=3, mfc="white")
+    colours = style.sequence(len(data.speed))
     for colour, place, value in zip(colours, data.profile_hersey.values, data.profile_friction.values, strict=True):
         axes.axvline(place, color=colour, lw=1.6, zorder=0)
         axes.plot(place, value, "o", color=colour, ms=7, mec="white", zorder=5)
-    axes.set(xlabel=r"Hersey number $\eta U/F_N$", ylabel=r"friction coefficient $\mu$", ylim=(1e-2, 3))
     axes.set_xlim(float(data.hersey_number[0]), float(data.hersey_number[-1]))
     load, roughness = (style.power(data.attrs[f"{name}_group"]) for name in ("load", "roughness"))
-    style.letter(axes, "a", rf"Stribeck curve, $\bar F_N$ = {load}, $\bar h_\mathrm{{rms}}$ = {roughness}")
-
-
-FIGURE = PaperFigure(
-    name="8",
-    title="Profiles in the mixed-lubrication regime",
-    claim="with speed, gap and fluid pressure gradually rise and the contact pressure falls, from the rough-contact gap "
-    "under Hertz pressure on the asperities to Hertz pressure in the fluid.",
-    compute=_compute,
-    draw=_draw,
-)
+    text = rf"Stribeck curve, $\bar F_N$ = {load}, $\bar h_\mathrm{{rms}}$ = {roughness}"
+    y = r"friction coefficient $\mu$"
+    style.panel(axes, "a", text, xlabel=r"Hersey number $\eta U/F_N$", ylabel=y, ylim=(1e-2, 3))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from stribeck._types import Array, Flags
@@ -16,22 +14,30 @@ from stribeck.figures.article.stribeck_cases import (
     CASES,
     LOADS,
     REPORTED_LAMBDA,
-    case_coords,
+    give_cases,
+    give_reports,
     over,
-    report_variables,
     solved_cases,
 )
-from stribeck.figures.build import FigureJob, column, dataset
-from stribeck.figures.paper_figure import PaperFigure, Report
+from stribeck.figures.job import FigureJob
+from stribeck.figures.style import Dataset
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.solve_error import SolveError
 
-if TYPE_CHECKING:
-    import xarray
+__all__ = ["compute", "draw"]
+
+TITLE = "Hydrodynamic-to-mixed lubrication transition"
+CLAIM = (
+    "the formula for friction matches the numbers closely around the minimum and over much of the mixed regime; Lambda "
+    "at the minimum is not constant but grows as roughness falls, and its expansion matches remarkably well; minimum friction "
+    "compares well with its formula."
+)
+SIZE = 13.0, 7.6
 
 SPEED_RANGE = 1e-8, 1e3  # Speed groups of the curves.
 # Relative roughnesses at which minima are solved, 1e-5 to 1e-1 in half decades.
 KAPPAS = tuple(10.0 ** (exponent / 2) for exponent in range(-10, -1))
+STEPS = len(CASES) + len(LOADS) * len(KAPPAS)
 
 SPEED_WINDOW = 0.5, 2.0  # Speeds over the predicted minimum between which the minimum is sought.
 
@@ -41,8 +47,8 @@ WEAKENING_RANGE = 1e-9, 0.49  # Values of k over which Lambda is compared with t
 LAMBDA_FORMS: tuple[transitions.Form, ...] = ("exact", "expansion", "uniform")
 
 
-def _compute(report: Report) -> xarray.Dataset:
-    work = FigureJob(report, steps=len(CASES) + len(LOADS) * len(KAPPAS))
+def compute(work: FigureJob) -> Dataset:
+    """Solve the curves and their minima, and compare them with the formulas."""
     curves = solved_cases(work, SPEED_RANGE, points=67)
     friction = over(curves, "friction")
     laws = {
@@ -75,37 +81,39 @@ def _compute(report: Report) -> xarray.Dataset:
     errors = {f"{name.removeprefix('law_')}_error": law / friction - 1 for name, law in laws.items()}
     near = (film > MIN_FILM_RATIO) & (film < MAX_FILM_RATIO) & (relative <= MAX_KAPPA)
     finding = _finding(errors, near, ratio, ratios, lowest, minima)
-    grid, map_ = ("case", "speed"), ("minimum_load", "kappa")
-    variables = {
-        "minimum_roughness": column(map_, at.roughness, "roughness group h_rms"),
-        "friction": column(grid, friction, "friction coefficient, definition published"),
-        "hydrodynamic_friction": column(
-            grid, over(curves, "hydrodynamic_friction"), "friction of smooth surfaces, root of squares"
-        ),
-        "law_large": column(grid, laws["law_large"], "friction by the formula of the paper, film of slow speed"),
-        "law_uniform": column(grid, laws["law_uniform"], "friction by our formula for any film"),
-        "large_error": column(grid, errors["large_error"], "relative error of law_large against the solver"),
-        "uniform_error": column(grid, errors["uniform_error"], "relative error of law_uniform against the solver"),
-        "film_ratio": column(grid, film, "film ratio c lambda^(3/5)/kappa"),
-        "speed_at_minimum": column(map_, speeds, "speed group of minimum friction, solved"),
-        "separation": column(map_, ratio, "central gap over h_rms/alpha at the minimum of friction, solved"),
-        "film_ratio_at_minimum": column(
-            map_, film_ratio, "c lambda^(3/5)/kappa at the minimum of friction, solved: the paper's Lambda"
-        ),
-        "minimum_friction": column(map_, lowest, "minimum friction coefficient, solved"),
-        "number": column(map_, transitions.weakening_number(at), "k of the solved minima"),
-        "lambda_of_number": column("k", against, "Lambda at the minimum by Lambert's W"),
-    }
-    variables |= {f"lambda_{form}": column(map_, value, f"Lambda at the minimum, {form}") for form, value in ratios.items()}
-    variables |= {name: column(map_, value, f"minimum friction, {name.split('_')[1]}") for name, value in minima.items()}
-    coords = case_coords() | {
-        "speed": column("speed", curves[0].values, "speed group lambda"),
-        "minimum_load": column("minimum_load", LOADS, "load group"),
-        "kappa": column("kappa", KAPPAS, "relative roughness h_rms/F"),
-        "k": column("k", numbers, "k = 2/(9 c^(5/3)) beta h_rms^(2/3) F^(1/3)/mu_0"),
-    }
-    reports = "; ".join(REPORTED_LAMBDA)
-    return dataset(variables | report_variables(), coords, finding=finding, reports=reports, **work.attributes)
+    work.along(
+        speed=(curves[0].values, "speed group lambda"),
+        minimum_load=(LOADS, "load group"),
+        kappa=(KAPPAS, "relative roughness h_rms/F"),
+        k=(numbers, "k = 2/(9 c^(5/3)) beta h_rms^(2/3) F^(1/3)/mu_0"),
+    )
+    smooth = over(curves, "hydrodynamic_friction")
+    work.give(
+        ("case", "speed"),
+        friction=(friction, "friction coefficient, definition published"),
+        hydrodynamic_friction=(smooth, "friction of smooth surfaces, root of squares"),
+        law_large=(laws["law_large"], "friction by the formula of the paper, film of slow speed"),
+        law_uniform=(laws["law_uniform"], "friction by our formula for any film"),
+        large_error=(errors["large_error"], "relative error of law_large against the solver"),
+        uniform_error=(errors["uniform_error"], "relative error of law_uniform against the solver"),
+        film_ratio=(film, "film ratio c lambda^(3/5)/kappa"),
+    )
+    film_words = "c lambda^(3/5)/kappa at the minimum of friction, solved: the paper's Lambda"
+    work.give(
+        ("minimum_load", "kappa"),
+        minimum_roughness=(at.roughness, "roughness group h_rms"),
+        speed_at_minimum=(speeds, "speed group of minimum friction, solved"),
+        separation=(ratio, "central gap over h_rms/alpha at the minimum of friction, solved"),
+        film_ratio_at_minimum=(film_ratio, film_words),
+        minimum_friction=(lowest, "minimum friction coefficient, solved"),
+        number=(transitions.weakening_number(at), "k of the solved minima"),
+        **{f"lambda_{form}": (value, f"Lambda at the minimum, {form}") for form, value in ratios.items()},
+        **{name: (value, f"minimum friction, {name.split('_')[1]}") for name, value in minima.items()},
+    )
+    work.give("k", lambda_of_number=(against, "Lambda at the minimum by Lambert's W"))
+    give_cases(work)
+    give_reports(work)
+    return work.dataset(finding, reports="; ".join(REPORTED_LAMBDA))
 
 
 def _minimum(work: FigureJob, load: float, kappa: float, speed: float) -> Landmark:
@@ -136,14 +144,3 @@ def _finding(
         f"within {100 * np.abs(best - 1).max():.1g} %."
     )
     return finding
-
-
-FIGURE = PaperFigure(
-    name="9",
-    title="Hydrodynamic-to-mixed lubrication transition",
-    claim="the formula for friction matches the numbers closely around the minimum and over much of the mixed regime; Lambda "
-    "at the minimum is not constant but grows as roughness falls, and its expansion matches remarkably well; minimum friction "
-    "compares well with its formula.",
-    compute=_compute,
-    draw=draw,
-)

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.asymptotics.rough import perturbation
 from stribeck.contacts.groups import Groups
 from stribeck.figures import style
-from stribeck.figures.build import FigureJob, column, dataset
-from stribeck.figures.paper_figure import PaperFigure, Report
+from stribeck.figures.job import FigureJob
+from stribeck.figures.style import Axes, Dataset, Figure
 from stribeck.solver.solution import Solution
 
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+TITLE = "Expansion of slow rough contacts in the speed"
+CLAIM = (
+    "p_f over lambda, the odd part of h over lambda and the even part of p_f over lambda^2 show excellent agreement "
+    "with the expansion to second order."
+)
+SIZE = 11.0, 7.0
 
 LOAD = 0.1  # Load group of the profiles.
 KAPPAS = (1e-3, 1e-4)  # Relative roughness: that of the panels, and one that shows what is left of the distance at slow speed.
@@ -25,7 +25,8 @@ KAPPAS = (1e-3, 1e-4)  # Relative roughness: that of the panels, and one that sh
 # Fluid numbers lambda/kappa**2 of the profiles: 0.01 to 32, where the fluid carries most of the load.
 FLUID_NUMBERS = tuple(10.0 ** (exponent / 2) for exponent in range(-4, 4))
 
-STATE_RTOL = 1e-8  # Relative tolerance: at the slowest speed the part of second order is 1e-3 of the pressure.
+STEPS = len(KAPPAS) * len(FLUID_NUMBERS)
+RTOL = 1e-8  # Relative tolerance: at the slowest speed the part of second order is 1e-3 of the pressure.
 
 CORE_HALF_WIDTH = 0.9  # Half-width [a] in which profiles are compared with the expansion.
 # Panels: what they show in words, on their axis, and in which power of ten.
@@ -42,8 +43,8 @@ PANEL_LABELS = (
 )
 
 
-def _compute(report: Report) -> xarray.Dataset:
-    work = FigureJob(report, steps=len(KAPPAS) * len(FLUID_NUMBERS), rtol=STATE_RTOL)
+def compute(work: FigureJob) -> Dataset:
+    """Solve slow contacts and compare them with their expansion."""
     x = np.linspace(-1.2, 1.2, 481)
     near = np.abs(x) < 0.999
     core = np.abs(x) <= CORE_HALF_WIDTH
@@ -70,22 +71,20 @@ def _compute(report: Report) -> xarray.Dataset:
         f"lambda = kappa^2, kappa = {KAPPAS[1]:g}, the formula of a is {100 * distance[0, 1, 4]:.0f} % off and that of c, "
         f"which gives the load, {100 * distance[2, 1, 4]:.0f} %."
     )
-    variables = {"speed": column(("kappa", "number"), speeds, "speed group lambda")}
+    work.along(
+        kappa=(KAPPAS, "relative roughness kappa"),
+        number=(FLUID_NUMBERS, "fluid number lambda/kappa^2"),
+        x=(x, "position over a"),
+    )
+    work.give(("kappa", "number"), speed=(speeds, "speed group lambda"))
     for k, (name, (words, *_)) in enumerate(PANEL_PARTS.items()):
-        variables[name] = column(("number", "x"), solved[k, 0], f"{words}, kappa = {KAPPAS[0]:g}")
-        variables[f"{name}_law"] = column("x", laws[k, 0], f"its formula; nan outside the contact ({words})")
-        variables[f"{name}_distance"] = column(
-            ("kappa", "number"),
-            distance[k],
-            f"largest distance of {name} from its formula for |x| < {CORE_HALF_WIDTH} a, over its largest value",
-        )
-        variables[f"{name}_change"] = column(("kappa", "number"), change[k], f"the same from {name} at the slowest speed")
-    coords = {
-        "kappa": column("kappa", KAPPAS, "relative roughness kappa"),
-        "number": column("number", FLUID_NUMBERS, "fluid number lambda/kappa^2"),
-        "x": column("x", x, "position over a"),
-    }
-    return dataset(variables, coords, finding=finding, load_group=LOAD, **work.attributes)
+        apart = f"largest distance of {name} from its formula for |x| < {CORE_HALF_WIDTH} a, over its largest value"
+        work.give(("number", "x"), **{name: (solved[k, 0], f"{words}, kappa = {KAPPAS[0]:g}")})
+        work.give("x", **{f"{name}_law": (laws[k, 0], f"its formula; nan outside the contact ({words})")})
+        changed = f"the same from {name} at the slowest speed"
+        of_speed = {f"{name}_distance": (distance[k], apart), f"{name}_change": (change[k], changed)}
+        work.give(("kappa", "number"), **of_speed)
+    return work.dataset(finding, load_group=LOAD)
 
 
 def _parts(solution: Solution, x: Array) -> Array:
@@ -115,25 +114,22 @@ def _laws(groups: Groups, x: Array, near: Flags) -> Array:
     return found
 
 
-def _draw(data: xarray.Dataset) -> Figure:
-    figure = style.new_figure(data, 11.0, 7.0)
+def draw(figure: Figure, data: Dataset) -> None:
+    """Draw each part of the expansion, and how far it is from the solver."""
     *fields, d = style.panels(figure, 2, 2)
-    colours = style.sequence(data.sizes["number"])
     for axes, which, text, (name, (_, label, power)) in zip(fields, "abc", PANEL_LABELS, PANEL_PARTS.items(), strict=True):
-        for colour, speed, values in zip(colours, data.speed.values[0], data[name].values, strict=True):
-            axes.plot(data.x, values / 10**power, color=colour, lw=1.3, label=style.power(speed))
+        style.steps(axes, data.x, data[name] / 10**power, data.speed[0], lw=1.3)
         law = data[f"{name}_law"] / 10**power
-        axes.plot(data.x, law, color=style.INK, lw=1.6, ls=style.DASHED, label="formula")
-        axes.set(xlabel="$x/a$", ylabel=label + f"  $[10^{power}]$" * bool(power), xlim=(-1.2, 1.2))
+        style.limit(axes, data.x, law, "formula", lw=1.6)
         low, high = float(law.min()), float(law.max())
-        axes.set_ylim(low - 0.25 * (high - low), high + 0.2 * (high - low))
-        style.letter(axes, which, rf"{text}, $\kappa$ = {style.power(float(data.kappa[0]))}")
-    style.legend(fields[2], loc="upper left", title=r"speed $\lambda$", fontsize=7.5)
+        ends = low - 0.25 * (high - low), high + 0.2 * (high - low)
+        legend = {"loc": "upper left", "title": r"speed $\lambda$", "fontsize": 7.5} if which == "c" else None
+        title = rf"{text}, $\kappa$ = {style.power(float(data.kappa[0]))}"
+        style.panel(axes, which, title, legend, xlabel="$x/a$", ylabel=label + f"  $[10^{power}]$" * bool(power), ylim=ends)
     _draw_distances(d, data)
-    return figure
 
 
-def _draw_distances(axes: Axes, data: xarray.Dataset) -> None:
+def _draw_distances(axes: Axes, data: Dataset) -> None:
     for (name, (_, label, _)), colour in zip(PANEL_PARTS.items(), (style.FLUID, style.GREEN, style.MARK), strict=True):
         for values, kappa, dashes, face in zip(
             data[f"{name}_distance"].values, data.kappa.values, ("-", style.DOTTED), (colour, "white"), strict=True
@@ -142,19 +138,9 @@ def _draw_distances(axes: Axes, data: xarray.Dataset) -> None:
                 data.number, values, "o", ls=dashes, color=colour, mfc=face, ms=5, lw=1.0,
                 label=rf"{label}, $\kappa$ = {style.power(kappa)}",
             )  # fmt: skip
-    axes.set(xlabel=r"fluid number $\lambda/\kappa^2$", ylabel="largest relative distance")
-    axes.set_ylim(5e-4, 20)
     style.slope(axes, 0.35, 8e-4, 2.0, "2", decades=0.5)
     style.slope(axes, 0.014, 0.0012, 1.0, "1", decades=0.5)
-    style.letter(axes, "+", rf"distance of a, b, c from the formulas, $|x| < {CORE_HALF_WIDTH}\,a$")
-    style.legend(axes, loc="upper left", fontsize=7.5, ncols=2)
-
-
-FIGURE = PaperFigure(
-    name="S1",
-    title="Expansion of slow rough contacts in the speed",
-    claim="p_f over lambda, the odd part of h over lambda and the even part of p_f over lambda^2 show excellent agreement "
-    "with the expansion to second order.",
-    compute=_compute,
-    draw=_draw,
-)
+    text = rf"distance of a, b, c from the formulas, $|x| < {CORE_HALF_WIDTH}\,a$"
+    legend = {"loc": "upper left", "fontsize": 7.5, "ncols": 2}
+    x, y = r"fluid number $\lambda/\kappa^2$", "largest relative distance"
+    style.panel(axes, "+", text, legend, xlabel=x, ylabel=y, ylim=(5e-4, 20))

@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from stribeck.figures import style
-from stribeck.figures.article.stribeck_cases import draw_reports, drawn_cases
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from stribeck.figures.article.stribeck_cases import draw_reports, drawn_cases, say_what_is_missing
+from stribeck.figures.style import Axes, Dataset, Figure
 
 MIN_FILM_RATIO = 3.0  # Film ratio above which the formulas for friction are compared.
 MAX_FILM_RATIO = 20.0  # Film ratio below which the formulas for friction are compared.
@@ -30,12 +24,16 @@ FRICTION_STYLES = {
     "friction_uniform": ("ours", "-"),
 }
 
+DATA_MISSING = (
+    "The paper draws data of Bongaerts 2007 here, which are\n"
+    "not public to us: bars show the ranges that it quotes,\nat no roughness in particular."
+)
+
 LOAD_COLOURS = (style.FLUID, style.CONTACT)
 
 
-def draw(data: xarray.Dataset) -> Figure:
-    """Return figure 9."""
-    figure = style.new_figure(data, 13.0, 7.6)
+def draw(figure: Figure, data: Dataset) -> None:
+    """Draw figure 9."""
     a, b, d, errors, c, ratios = style.panels(figure, 2, 3)
     for i, look, label in drawn_cases(data):
         x = data.hydrodynamic_friction[i]
@@ -46,21 +44,20 @@ def draw(data: xarray.Dataset) -> Figure:
         if float(data["roughness"][i] / data["load"][i]) <= MAX_KAPPA:
             for name, dashes in (("large_error", style.DASHED), ("uniform_error", "-")):
                 errors.semilogx(data.film_ratio[i], 100 * data[name][i], color=look["color"], ls=dashes, lw=1.3)
-    a.set(xlabel=r"$\mu_{f,\mathrm{th}}$", ylabel=r"friction coefficient $\mu$", xlim=(5e-4, 10), ylim=(2e-4, 10))
-    style.letter(a, "a", "dashed: the paper's formula; dotted: ours")
-    style.legend(a, loc="lower right", title=r"$\bar F_N$,  $\bar h_\mathrm{rms}$", fontsize=7.5, ncols=2)
+    legend = {"loc": "lower right", "title": r"$\bar F_N$,  $\bar h_\mathrm{rms}$", "fontsize": 7.5, "ncols": 2}
+    x, y = r"$\mu_{f,\mathrm{th}}$", r"friction coefficient $\mu$"
+    text = "dashed: the paper's formula; dotted: ours"
+    style.panel(a, "a", text, legend, xlabel=x, ylabel=y, xlim=(5e-4, 10), ylim=(2e-4, 10))
     errors.axhline(0.0, color=style.GREY, lw=0.8)
-    errors.set(
-        xlabel=r"film ratio $c\lambda^{3/5}/\kappa$", ylabel="formula over solver − 1 (%)", xlim=(1, 100), ylim=(-100, 60)
-    )
-    style.letter(errors, "+", "error of the friction: dashed the paper's, full ours")
+    x, y = r"film ratio $c\lambda^{3/5}/\kappa$", "formula over solver − 1 (%)"
+    text = "error of the friction: dashed the paper's, full ours"
+    style.panel(errors, "+", text, xlabel=x, ylabel=y, xlim=(1, 100), ylim=(-100, 60))
     _draw_lambda(b, data)
     _draw_reported(d, data)
     _draw_friction(c, ratios, data)
-    return figure
 
 
-def _draw_lambda(axes: Axes, data: xarray.Dataset) -> None:
+def _draw_lambda(axes: Axes, data: Dataset) -> None:
     for i, (load, colour) in enumerate(zip(data.minimum_load.values, LOAD_COLOURS, strict=True)):
         x = data.minimum_roughness[i]
         axes.semilogx(x, data.separation[i], "o", color=colour, ms=5, label=f"solved, load {load:g}")
@@ -68,12 +65,12 @@ def _draw_lambda(axes: Axes, data: xarray.Dataset) -> None:
         for form, (label, dashes) in LAMBDA_STYLES.items():
             axes.plot(x, data[f"lambda_{form}"][i], color=colour, ls=dashes, lw=1.2, label=label if i else None)
     axes.axhline(float(data.textbook), color=style.GREY, lw=1.2, ls=style.DASHED, label="textbook, Spikes 1997")
-    axes.set(xlabel=r"roughness $\bar h_\mathrm{rms}$", ylabel=r"$\Lambda$ at the minimum of friction", ylim=(0, 19))
-    style.letter(axes, "b", r"full dots $h(0)$, open dots $c\lambda^{3/5}$, over $\kappa$")
-    style.legend(axes, loc="upper right", ncols=2)
+    x, y = r"roughness $\bar h_\mathrm{rms}$", r"$\Lambda$ at the minimum of friction"
+    text = r"full dots $h(0)$, open dots $c\lambda^{3/5}$, over $\kappa$"
+    style.panel(axes, "b", text, {"loc": "upper right", "ncols": 2}, xlabel=x, ylabel=y, ylim=(0, 19))
 
 
-def _draw_friction(axes: Axes, ratios: Axes, data: xarray.Dataset) -> None:
+def _draw_friction(axes: Axes, ratios: Axes, data: Dataset) -> None:
     for i, (load, colour) in enumerate(zip(data.minimum_load.values, LOAD_COLOURS, strict=True)):
         x = data.minimum_roughness[i]
         axes.loglog(x, data.minimum_friction[i], "o", color=colour, ms=5, label=f"solved, load {load:g}")
@@ -82,14 +79,13 @@ def _draw_friction(axes: Axes, ratios: Axes, data: xarray.Dataset) -> None:
             axes.plot(x, data[name][i], **shown)
             ratios.loglog(x, data[name][i] / data.minimum_friction[i], **shown)
     ratios.axhline(1.0, color=style.GREY, lw=0.8)
-    axes.set(xlabel=r"roughness $\bar h_\mathrm{rms}$", ylabel=r"minimum friction $\mu_\mathrm{min}$", ylim=(2e-5, 5))
-    ratios.set(xlabel=r"roughness $\bar h_\mathrm{rms}$", ylabel=r"formula over solver", ylim=(0.03, 2))
-    style.letter(axes, "c", "minimum friction")
-    style.letter(ratios, "+", "the same over the solved: corrected and printed")
-    style.legend(axes, loc="upper left")
+    x, y = r"roughness $\bar h_\mathrm{rms}$", r"minimum friction $\mu_\mathrm{min}$"
+    style.panel(axes, "c", "minimum friction", {"loc": "upper left"}, xlabel=x, ylabel=y, ylim=(2e-5, 5))
+    text = "the same over the solved: corrected and printed"
+    style.panel(ratios, "+", text, xlabel=x, ylabel=r"formula over solver", ylim=(0.03, 2))
 
 
-def _draw_reported(axes: Axes, data: xarray.Dataset) -> None:
+def _draw_reported(axes: Axes, data: Dataset) -> None:
     axes.loglog(data.k, data.lambda_of_number, color=style.INK, lw=1.6, label=r"$\Lambda^{1/3} e^{-\Lambda} = k$")
     solved = zip(data.minimum_load.values, LOAD_COLOURS, data.number.values, data.separation.values, strict=True)
     for load, colour, numbers, ratios in solved:
@@ -97,15 +93,8 @@ def _draw_reported(axes: Axes, data: xarray.Dataset) -> None:
     draw_reports(axes, data, 0.66)
     first, last = float(data.k[0]), float(data.k[-1])
     axes.set_xlim(first, first * (last / first) ** (1 / 0.66))
-    axes.set(xlabel=r"$k \propto (\beta/\mu_0)\, \bar h_\mathrm{rms}^{2/3} \bar F_N^{1/3}$", ylim=(0.3, 3e5))
-    axes.set_ylabel(r"$\Lambda$ at the minimum of friction")
-    axes.set_xticks([1e-8, 1e-6, 1e-4, 1e-2])
-    axes.minorticks_off()
-    axes.text(
-        0.03, 0.97,
-        "The paper draws data of Bongaerts 2007 here, which are\n"
-        "not public to us: bars show the ranges that it quotes,\nat no roughness in particular.",
-        transform=axes.transAxes, size=7.5, color=style.GREY, va="top",
-    )  # fmt: skip
-    style.letter(axes, "d", r"instead of measured data: $\Lambda$, solved and reported")
-    style.legend(axes, loc="lower left", bbox_to_anchor=(0.0, 0.5))
+    say_what_is_missing(axes, DATA_MISSING)
+    legend = {"loc": "lower left", "bbox_to_anchor": (0.0, 0.5)}
+    x = r"$k \propto (\beta/\mu_0)\, \bar h_\mathrm{rms}^{2/3} \bar F_N^{1/3}$"
+    text, y = r"instead of measured data: $\Lambda$, solved and reported", r"$\Lambda$ at the minimum of friction"
+    style.panel(axes, "d", text, legend, xlabel=x, ylabel=y, ylim=(0.3, 3e5))

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.curves.result import StribeckCurve
 from stribeck.figures import style
-from stribeck.figures.build import Column, FigureJob, column
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
+from stribeck.figures.job import FigureJob
+from stribeck.figures.style import Axes, Dataset
 
 LOADS = (0.1, 0.01)  # Load groups of the curves.
 ROUGHNESSES = (1e-5, 1e-4, 1e-3, 1e-2)  # Roughness groups of the curves.
@@ -41,23 +38,21 @@ def solved_cases(work: FigureJob, speed: tuple[float, float], points: int, **opt
     return [work.curve(load=load, roughness=rough, speed=speed, points=points, **options) for load, rough in CASES]
 
 
-def case_coords() -> dict[str, Column]:
-    """Return the coordinates of the dimension ``case``."""
+def give_cases(work: FigureJob) -> None:
+    """Take the coordinates of the dimension ``case``."""
     loads, roughnesses = zip(*CASES, strict=True)
-    return {
-        "load": column("case", loads, "load group"),
-        "roughness": column("case", roughnesses, "roughness group h_rms"),
-    }
+    work.along("case", load=(loads, "load group"), roughness=(roughnesses, "roughness group h_rms"))
 
 
-def report_variables() -> dict[str, Column]:
-    """Return the reported ranges of Lambda along the dimension ``report``, whose names are in the attribute ``reports``."""
+def give_reports(work: FigureJob) -> None:
+    """Take the reported ranges of Lambda along the dimension ``report``, whose names are in the attribute ``reports``."""
     low, high = zip(*REPORTED_LAMBDA.values(), strict=True)
-    return {
-        "reported_low": column("report", low, "minimum Lambda at the transition that the paper quotes from experiments"),
-        "reported_high": column("report", high, "largest Lambda at the transition that the paper quotes from experiments"),
-        "textbook": column((), TEXTBOOK_LAMBDA, "Lambda at the transition by textbooks"),
-    }
+    work.give(
+        "report",
+        reported_low=(low, "minimum Lambda at the transition that the paper quotes from experiments"),
+        reported_high=(high, "largest Lambda at the transition that the paper quotes from experiments"),
+    )
+    work.give((), textbook=(TEXTBOOK_LAMBDA, "Lambda at the transition by textbooks"))
 
 
 def over(curves: list[StribeckCurve], name: str) -> Array:
@@ -65,7 +60,7 @@ def over(curves: list[StribeckCurve], name: str) -> Array:
     return np.array([attrgetter(name)(curve) for curve in curves])
 
 
-def drawn_cases(data: xarray.Dataset) -> Iterator[tuple[int, dict[str, Any], str]]:
+def drawn_cases(data: Dataset) -> Iterator[tuple[int, dict[str, Any], str]]:
     """Yield number, style and label of each case: colours for roughness; circles for the heavy, squares for the light load."""
     roughnesses = sorted(set(data["roughness"].values.tolist()))
     colours = dict(zip(roughnesses, style.sequence(len(roughnesses)), strict=True))
@@ -76,7 +71,7 @@ def drawn_cases(data: xarray.Dataset) -> Iterator[tuple[int, dict[str, Any], str
         yield i, {"color": colours[roughness]} | marks, f"{load:g},  {style.power(roughness)}"
 
 
-def draw_reports(axes: Axes, data: xarray.Dataset, left: float) -> None:
+def draw_reports(axes: Axes, data: Dataset, left: float) -> None:
     """Draw the reported ranges as bars at the right of a panel of Lambda, from ``left`` of its width on."""
     axes.fill_between([left, 1.0], 0.0, 1.0, transform=axes.transAxes, color="#f4f4f2", lw=0, zorder=0)
     across = axes.get_yaxis_transform()
@@ -88,3 +83,10 @@ def draw_reports(axes: Axes, data: xarray.Dataset, left: float) -> None:
         axes.plot([place, place], [low, high], color=colour, lw=6, solid_capstyle="butt", transform=across)
         axes.text(place, 1.25 * high, name, transform=across, rotation=90, size=7.5, color=style.INK, ha="center", va="bottom")
     axes.axhline(float(data.textbook), color=style.GREY, lw=1.1, ls=style.DASHED, label="textbook, Spikes 1997")
+
+
+def say_what_is_missing(axes: Axes, text: str) -> None:
+    """Write what the paper draws in the free part of a panel of Lambda, beside what is drawn in its place."""
+    axes.set_xticks([1e-8, 1e-6, 1e-4, 1e-2])
+    axes.minorticks_off()
+    axes.text(0.03, 0.97, text, transform=axes.transAxes, size=7.5, color=style.GREY, va="top")
