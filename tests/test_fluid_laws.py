@@ -290,7 +290,7 @@ def test_the_width_of_the_medium_solves_its_equation(subtests):
             def excess(e):
                 return share @ ((u**3 - e**3) / (u**3 + e**3)) - ndtr(-separation)
 
-            found = float(medium_width(np.array([separation]))[0][0])
+            found = float(medium_width(np.array([separation]))[0])
             assert found == pytest.approx(brentq(excess, 1e-3, 10.0, xtol=1e-14, rtol=1e-13), rel=1e-9)
 
 

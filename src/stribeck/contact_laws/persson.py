@@ -19,8 +19,9 @@ import scipy
 
 from stribeck._types import Array, Indices
 from stribeck.contact_laws.persson_integral import Integral, tabulate
-from stribeck.contact_laws.spectrum import SelfAffine, Spectrum, height_of_roughness, table_of
+from stribeck.contact_laws.spectrum import OF_HEIGHT, SCALED, TOO_HIGH, SelfAffine, Spectrum, height_of_roughness, table_of
 from stribeck.numerics.trace import value_of
+from stribeck.quantities.docstrings import told
 from stribeck.quantities.results import ByValue
 from stribeck.quantities.schema import Input
 
@@ -42,6 +43,12 @@ GAMMA_INPUT = Input(
     optional=True,
     default=GAMMA,
 )
+
+# What functions say of the surface.
+ROUGHNESS = {
+    "spectrum": "Spectrum or SelfAffine\n    Power spectrum of the roughness of both surfaces together.",
+    "gamma": "float\n    Reduction of the elastic energy, from 0.01 to 1 [-].",
+}
 
 SEALING_CONTACT_FRACTION = 0.42  # Fraction of the surface in contact above which no path of the fluid is left [Dapp 2012].
 
@@ -159,23 +166,13 @@ class PerssonLaw(ByValue):
         """Return the real area of contact over the apparent one at a pressure."""
         return np.asarray(scipy.special.erf(self.area_slope * np.asarray(pressure, dtype=float)))
 
+    @told(SCALED, OF_HEIGHT, TOO_HIGH)
     def scaled(self, rms_height: float) -> PerssonLaw:
         """Return the law of the same shape of the spectrum with another rms height, without a new table.
 
-        Parameters
-        ----------
-        rms_height : float
-            Root mean square of the roughness [m].
-
-        Returns
-        -------
-        PerssonLaw
-            The law; beta and the slope are proportional to the height, alpha stays.
-
-        Raises
-        ------
-        InputError
-            Where ``rms_height`` is not a positive number, or more than the longest wavelength, as a factor would be.
+        Notes
+        -----
+        beta and the slope are proportional to the height, alpha stays.
         """
         factor = height_of_roughness(rms_height, self.longest_wavelength) / self.rms_height
         return replace(
@@ -192,15 +189,9 @@ class PerssonLaw(ByValue):
         return index, position - knots[index]
 
 
+@told(ROUGHNESS)
 def persson_law(spectrum: Spectrum | SelfAffine, gamma: float = GAMMA) -> PerssonLaw:
     r"""Tabulate Persson's contact law of a power spectrum.
-
-    Parameters
-    ----------
-    spectrum : Spectrum or SelfAffine
-        Power spectrum of the roughness of both surfaces together.
-    gamma : float
-        Reduction of the elastic energy, from 0.01 to 1 [-].
 
     Returns
     -------
@@ -238,6 +229,7 @@ def persson_law(spectrum: Spectrum | SelfAffine, gamma: float = GAMMA) -> Persso
     )
 
 
+@told(ROUGHNESS)
 def exponential_limit(spectrum: Spectrum | SelfAffine, gamma: float = GAMMA) -> tuple[float, float]:
     r"""Return alpha and beta of the exponential law, without the table of the whole law.
 
@@ -245,13 +237,6 @@ def exponential_limit(spectrum: Spectrum | SelfAffine, gamma: float = GAMMA) -> 
 
         \alpha = \frac{h_\mathrm{rms}}{\gamma \pi^{1/2} \int q^2 C w\, \mathrm{d}q}, \quad
         \beta = 0.7493 \exp\left[-\langle\ln w\rangle + 3\, \tfrac{1 - \gamma}{\gamma}\, 0.40713\right]
-
-    Parameters
-    ----------
-    spectrum : Spectrum or SelfAffine
-        Power spectrum of the roughness of both surfaces together.
-    gamma : float
-        Reduction of the elastic energy, from 0.01 to 1 [-].
 
     Returns
     -------

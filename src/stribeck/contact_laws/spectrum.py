@@ -21,6 +21,7 @@ import numpy as np
 import scipy
 
 from stribeck._types import Array
+from stribeck.quantities.docstrings import told
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import ByValue
@@ -28,6 +29,14 @@ from stribeck.quantities.schema import Input, law
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["SelfAffine", "Spectrum", "height_of_roughness", "positive", "table_of"]
+
+
+# What methods say that scale roughness.
+OF_HEIGHT = "Spectrum, SelfAffine or PerssonLaw\n    The same kind, of the other height."
+SCALED = {"rms_height": "float\n    Root mean square of the height [m]."}
+TOO_HIGH = (
+    "InputError\n    Where ``rms_height`` is not a positive number, or more than the longest wavelength, as a factor would be."
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,24 +171,9 @@ class Spectrum(ByValue):
         """Root mean square of the mean curvature, half the Laplacian of the height [1/m]."""
         return 0.5 * math.sqrt(self.moment(4))
 
+    @told(SCALED, OF_HEIGHT, TOO_HIGH)
     def scaled(self, rms_height: float) -> Spectrum:
-        """Return the spectrum of the same shape with another rms height.
-
-        Parameters
-        ----------
-        rms_height : float
-            Root mean square of the height [m].
-
-        Returns
-        -------
-        Spectrum
-            The spectrum, all densities multiplied by one number.
-
-        Raises
-        ------
-        InputError
-            Where ``rms_height`` is not a positive number, or more than the longest wavelength, as a factor would be.
-        """
+        """Return the spectrum of the same shape with another rms height."""
         return self._with_height(height_of_roughness(rms_height, 2 * math.pi / self.lowest))
 
     def _with_height(self, rms_height: float) -> Spectrum:
@@ -278,24 +272,9 @@ class SelfAffine:
             table = Spectrum(np.array([self.q0, self.q1]), np.array([1.0, falling]))
         return table._with_height(self.h_rms)
 
+    @told(SCALED, OF_HEIGHT, TOO_HIGH)
     def scaled(self, rms_height: float) -> SelfAffine:
-        """Return the surface of the same shape of the spectrum with another rms height.
-
-        Parameters
-        ----------
-        rms_height : float
-            Root mean square of the height [m].
-
-        Returns
-        -------
-        SelfAffine
-            The surface.
-
-        Raises
-        ------
-        InputError
-            Where ``rms_height`` is not a positive number, or more than the longest wavelength, as a factor would be.
-        """
+        """Return the surface of the same shape of the spectrum with another rms height."""
         return replace(self, h_rms=height_of_roughness(rms_height, 2 * math.pi / self.q0))
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from stribeck.files.datasets import Column, listed, new_dataset, write_csv, write_netcdf, write_parquet, write_zarr
 from stribeck.files.writing import PathLike
-from stribeck.quantities.docstrings import Described
+from stribeck.quantities.docstrings import Described, told
 
 if TYPE_CHECKING:
     import xarray
@@ -131,6 +131,16 @@ class Drawn:
         return figure
 
 
+# What the methods that write a dataset say of their arguments.
+_WRITTEN = {
+    "path": "str or path-like\n    The file, or the folder of Zarr.",
+    "force": "bool\n    Whether an existing one is replaced; otherwise it is kept and the call refused.",
+    "**sampling": "Any\n    What ``to_dataset`` takes, as of a ball ``points`` and ``reach``.",
+}
+_UNWRITTEN = """InputError
+    If it cannot be written, or exists and ``force`` is not given, or a table is asked for of what is none."""
+
+
 class Exported(Drawn, Tabled):
     """A result that draws itself and writes its ``to_dataset``."""
 
@@ -138,78 +148,22 @@ class Exported(Drawn, Tabled):
         dataset_of: Callable[..., xarray.Dataset] = self.to_dataset
         return dataset_of(**sampling)
 
+    @told(_WRITTEN, raises=_UNWRITTEN)
     def to_netcdf(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
-        """Write the dataset as NetCDF.
-
-        Parameters
-        ----------
-        path : str or path-like
-            The file.
-        force : bool
-            Whether an existing file is replaced; otherwise it is kept and the call refused.
-        **sampling
-            What ``to_dataset`` takes, as of a ball ``points`` and ``reach``.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written, or exists and ``force`` is not given.
-        """
+        """Write the dataset as NetCDF."""
         write_netcdf(self._sampled(sampling), path, force=force)
 
+    @told(_WRITTEN, raises=_UNWRITTEN)
     def to_csv(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
-        """Write the dataset as a table of values separated by commas, a row for each combination of its coordinates.
-
-        Parameters
-        ----------
-        path : str or path-like
-            The file.
-        force : bool
-            Whether an existing file is replaced; otherwise it is kept and the call refused.
-        **sampling
-            What ``to_dataset`` takes.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written, or exists and ``force`` is not given, or the dataset is no table.
-        """
+        """Write the dataset as a table of values separated by commas, a row for each combination of its coordinates."""
         write_csv(self._sampled(sampling), path, force=force)
 
+    @told(_WRITTEN, raises=_UNWRITTEN)
     def to_parquet(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
-        """Write the dataset as Parquet, a row for each combination of its coordinates; needs the extra ``parquet``.
-
-        Parameters
-        ----------
-        path : str or path-like
-            The file.
-        force : bool
-            Whether an existing file is replaced; otherwise it is kept and the call refused.
-        **sampling
-            What ``to_dataset`` takes.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written, or exists and ``force`` is not given, or the dataset is no table.
-        """
+        """Write the dataset as Parquet, a row for each combination of its coordinates; needs the extra ``parquet``."""
         write_parquet(self._sampled(sampling), path, force=force)
 
+    @told(_WRITTEN, raises=_UNWRITTEN)
     def to_zarr(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
-        """Write the dataset as a folder that ``xarray.open_zarr`` opens.
-
-        Parameters
-        ----------
-        path : str or path-like
-            The folder.
-        force : bool
-            Whether an existing one is replaced; otherwise it is kept and the call refused.
-        **sampling
-            What ``to_dataset`` takes.
-
-        Raises
-        ------
-        InputError
-            If the folder cannot be written, or exists and ``force`` is not given.
-        """
+        """Write the dataset as a folder that ``xarray.open_zarr`` opens."""
         write_zarr(self._sampled(sampling), path, force=force)

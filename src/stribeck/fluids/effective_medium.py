@@ -120,24 +120,16 @@ class EffectiveMedium(FlowFactors):
         )
 
 
-def medium_width(d: Array) -> tuple[Array, Array]:
-    """Return the width e of the medium at the separation d of the mean planes, over the roughness, and its slope."""
+def medium_width(d: Array) -> Array:
+    """Return the width e of the medium at the separation d of the mean planes, both over the roughness."""
     inner, outer = _tables()
-    found, slope = np.zeros_like(d), np.zeros_like(d)
-    for left, right, (value, derivative) in zip(TABLE_EDGES[:-1], TABLE_EDGES[1:], inner, strict=True):
+    found = np.zeros_like(d)
+    for left, right, coefficients in zip(TABLE_EDGES[:-1], TABLE_EDGES[1:], inner, strict=True):
         here = (d > left) & (d <= right)
-        if here.any():
-            s = (2 * d[here] - left - right) / (right - left)
-            found[here], slope[here] = chebyshev.chebval(s, value), chebyshev.chebval(s, derivative)
+        found[here] = chebyshev.chebval((2 * d[here] - left - right) / (right - left), coefficients)
     far = d > TABLE_EDGES[-1]
-    if far.any():
-        value, derivative = outer
-        y = 1 / d[far] ** 2
-        s = 2 * y * TABLE_EDGES[-1] ** 2 - 1
-        ratio = chebyshev.chebval(s, value)
-        found[far] = d[far] * ratio
-        slope[far] = ratio - 2 * y * chebyshev.chebval(s, derivative)
-    return found, slope
+    found[far] = d[far] * chebyshev.chebval(2 * (TABLE_EDGES[-1] / d[far]) ** 2 - 1, outer)
+    return found
 
 
 @lru_cache(maxsize=1)
@@ -146,7 +138,7 @@ def _factor_table() -> Cells:
 
     def factor(logarithm: Array) -> Array:
         width = PERCOLATION + np.exp(logarithm)
-        phi = (medium_width(nominal_separation(width))[0] / width) ** 3
+        phi = (medium_width(nominal_separation(width)) / width) ** 3
         return np.asarray(add_floor(phi))
 
     return Cells.of(
@@ -155,21 +147,20 @@ def _factor_table() -> Cells:
 
 
 @lru_cache(maxsize=1)
-def _tables() -> tuple[list[tuple[Array, Array]], tuple[Array, Array]]:
-    """Coefficients of e between :data:`TABLE_EDGES`, and of e/d in 1/d**2 beyond, each with those of the derivative."""
-    points = np.cos(np.pi * (np.arange(TABLE_COEFFICIENTS) + 0.5) / TABLE_COEFFICIENTS)
-    inner = []
-    for left, right in zip(TABLE_EDGES[:-1], TABLE_EDGES[1:], strict=True):
-        values = _widths(0.5 * (left + right) + 0.5 * (right - left) * points)
-        inner.append(_fit_polynomial(points, values, 2 / (right - left)))
-    y = 0.5 * (1 + points) / TABLE_EDGES[-1] ** 2
-    return inner, _fit_polynomial(points, _widths(y**-0.5) * y**0.5, 2 * TABLE_EDGES[-1] ** 2)
+def _tables() -> tuple[list[Array], Array]:
+    """Chebyshev coefficients of e between :data:`TABLE_EDGES`, and of e/d in 1/d**2 beyond."""
+    points = chebyshev.chebpts1(TABLE_COEFFICIENTS)[::-1]
+    inner = [
+        _fitted(points, _widths(0.5 * (left + right) + 0.5 * (right - left) * points))
+        for left, right in zip(TABLE_EDGES[:-1], TABLE_EDGES[1:], strict=True)
+    ]
+    far = TABLE_EDGES[-1] * (0.5 * (1 + points)) ** -0.5
+    return inner, _fitted(points, _widths(far) / far)
 
 
-def _fit_polynomial(points: Array, values: Array, scale: float) -> tuple[Array, Array]:
-    """Return the coefficients of a polynomial and of its derivative times ``scale``."""
-    fit = chebyshev.chebfit(points, values, TABLE_COEFFICIENTS - 1)
-    return np.asarray(fit, dtype=np.float64), np.asarray(chebyshev.chebder(fit) * scale, dtype=np.float64)
+def _fitted(points: Array, values: Array) -> Array:
+    """Return the Chebyshev coefficients of a polynomial through values."""
+    return np.asarray(chebyshev.chebfit(points, values, TABLE_COEFFICIENTS - 1), dtype=np.float64)
 
 
 def _widths(separations: Array) -> Array:

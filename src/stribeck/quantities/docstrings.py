@@ -10,7 +10,9 @@ import ast
 import inspect
 import re
 from collections.abc import Callable, Mapping
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple, TypeVar
+
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class Words(NamedTuple):
@@ -57,7 +59,11 @@ def complete_docstring(
     head, *parts = _HEADING.split(inspect.getdoc(function) or "")
     own = {title: text.strip("\n") for title, text in zip(parts[::2], parts[1::2], strict=True)}
     described = dict(re.findall(r"^(\w+) : (.*(?:\n    .*)*)", own.get("Parameters", ""), re.MULTILINE))
-    names = inspect.signature(function).parameters
+    names = [
+        f"**{name}" if each.kind is each.VAR_KEYWORD else name
+        for name, each in inspect.signature(function).parameters.items()
+        if name != "self"
+    ]
     sections = {
         "Parameters": "\n".join(f"{name} : {described.get(name) or arguments[name]}" for name in names),
         "Attributes": own.get("Attributes", ""),
@@ -68,3 +74,13 @@ def complete_docstring(
     }
     body = "\n\n".join(f"{title}\n{'-' * len(title)}\n{text}" for title, text in sections.items() if text)
     return f"{head.strip()}\n\n{body}\n"
+
+
+def told(arguments: Mapping[str, str], returns: str = "", raises: str = "") -> Callable[[Function], Function]:
+    """Return the decorator that completes the docstring of a function or method by what it shares with others."""
+
+    def complete(function: Function) -> Function:
+        function.__doc__ = complete_docstring(function, arguments, returns, raises)
+        return function
+
+    return complete
