@@ -89,8 +89,8 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
     speed_name, friction_name = columns["speed"][0], columns["friction"][0]
     table = without_codes(table, speed_name, [friction_name])
     values = Values(table, settings)
-    speed, friction = (_array(values, name, meaning) for name, meaning in ((speed_name, "speed"), (friction_name, "friction")))
-    stated = _array(values, columns["error"][0], "error") if "error" in columns else None
+    speed, friction = (values.numbers(name, meaning) for name, meaning in ((speed_name, "speed"), (friction_name, "friction")))
+    stated = values.numbers(columns["error"][0], "error") if "error" in columns else None
     time, timed, time_note = _time(table, table.header.index(run) if run else None)
     warm = temperatures(table)
     there = np.isfinite(speed) & np.isfinite(friction) & np.isfinite(time)
@@ -158,7 +158,7 @@ def _uses_coefficient(table: TextTable, settings: FitSettings) -> bool:
         return True
     columns = columns_of(table, settings)
     values = Values(table, settings)
-    given = _array(values, columns["friction"][0], "friction")
+    given = values.numbers(columns["friction"][0], "friction")
     with np.errstate(divide="ignore", invalid="ignore"):
         found = np.abs(force / load)
         apart = np.abs(found / np.abs(given) - 1)
@@ -307,12 +307,12 @@ def _curves(
     """Return the curve of each row, and name and inputs of each curve."""
     given = [name for name in columns if name in settings.inputs.quantities and name not in ("speed", "boundary_friction")]
     labels = table.column(columns["curve"][0]) if "curve" in columns else ("",) * len(table.rows)
-    series = {name: [values.value(i, columns[name][0], name) for i in range(len(table.rows))] for name in given}
+    series = {name: values.checked(columns[name][0], name) for name in given}
     keys: dict[tuple[str, tuple[tuple[str, float], ...]], int] = {}
     found = []
     last: dict[str, float] = {}
     for i, label in enumerate(labels):
-        last = last | {name: value for name, each in series.items() if (value := each[i]) is not None}
+        last = last | {name: float(each[i]) for name, each in series.items() if not np.isnan(each[i])}
         found.append(keys.setdefault((label, tuple(sorted(last.items()))), len(keys)))
     return np.array(found), tuple((label, dict(inputs)) for label, inputs in keys)
 
@@ -333,9 +333,3 @@ def _last_digit(cells: Sequence[str]) -> float:
     digits = [re.fullmatch(r"[+-]?\d*(?:[.,](\d*))?", cell.strip()) for cell in cells]
     counts = [len(each[1] or "") for each in digits if each]
     return 10.0 ** -max(counts) if counts and 2 * len(counts) > len(cells) else 0.0
-
-
-def _array(values: Values, column: str, meaning: str) -> Array:
-    """Return a column in SI units, NaN where a value is missing."""
-    read = [values.number(i, column, meaning) for i in range(len(values.table.rows))]
-    return np.array([np.nan if value is None else value for value in read])

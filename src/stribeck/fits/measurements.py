@@ -110,20 +110,22 @@ def read_file(path: PathLike, settings: FitSettings) -> Measurements:
     empty: list[int] = []
     frictions = columns["friction"]
     given = [name for name in columns if name in settings.inputs.quantities and name not in ("speed", "boundary_friction")]
+    places = reader.checked(columns[abscissa][0], abscissa)
+    labels = table.column(columns["curve"][0]) if "curve" in columns else [""] * len(places)
+    series = {name: reader.checked(columns[name][0], name) for name in given}
+    measured = {name: reader.checked(name, "friction") for name in frictions}
+    errors = reader.checked(columns["error"][0], "error") if "error" in columns else np.ones(len(places))
+    of_runs = table.column(run) if run else [""] * len(places)
     for i, number in enumerate(table.numbers):
-        place = reader.value(i, columns[abscissa][0], abscissa)
-        label = table.rows[i][table.header.index(columns["curve"][0])] if "curve" in columns else ""
-        inputs = {name: reader.value(i, columns[name][0], name) for name in given}
-        for column in frictions:
-            mu = reader.value(i, column, "friction")
-            error = reader.value(i, columns["error"][0], "error") if "error" in columns else 1.0
-            if place is None or mu is None or error is None or None in inputs.values():
+        inputs = {name: float(values[i]) for name, values in series.items()}
+        for column, frictions_there in measured.items():
+            place, mu, error = float(places[i]), float(frictions_there[i]), float(errors[i])
+            if any(map(math.isnan, (place, mu, error, *inputs.values()))):
                 empty.append(number)
                 continue
-            name = label if len(frictions) == 1 else f"{label} {split_header(column)[0]}".strip()
-            known = {key: value for key, value in inputs.items() if value is not None}
-            rows.append((name, number, place, mu, error, known))
-            runs.append(table.rows[i][table.header.index(run)] if run else "")
+            name = labels[i] if len(frictions) == 1 else f"{labels[i]} {split_header(column)[0]}".strip()
+            rows.append((name, number, place, mu, error, inputs))
+            runs.append(of_runs[i])
     if not rows:
         raise InputError(f"{path}: no row holds both {abscissa.replace('_', ' ')} and friction; check the columns.")
     averaged = None

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import re
 
+import numpy as np
+
+from stribeck._types import Array
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import MISSING_CELLS, number_of, split_header
+from stribeck.files.cells import MISSING_CELLS, number_of
 from stribeck.files.text_table import TextTable
 from stribeck.fits.table.columns import ABSCISSAS
 from stribeck.fits.table.units import BARE, DIMENSION, has_dimension, si_factor
@@ -19,48 +23,44 @@ LARGEST_FRICTION = 10.0  # Friction coefficient from which percent are suspected
 
 
 class Values:
-    """Cells in SI units; a cell with a unit of its own is read with that."""
+    """Columns in SI units, NaN where a value is missing; a cell with a unit of its own is read with that."""
 
     def __init__(self, table: TextTable, settings: FitSettings) -> None:
         self.table, self.settings = table, settings
-        self.decimals: dict[str, str] = {}
-        self.factors: dict[tuple[str, str], float] = {}
 
-    def value(self, i: int, column: str, meaning: str) -> float | None:
-        """Return a value in SI units, None where it is missing; refuse one that is impossible."""
-        value = self.number(i, column, meaning)
-        if value is None:
-            return None
-        return self._checked(value, self.table.rows[i][self.table.header.index(column)], meaning, self._where(i, column))
+    def checked(self, column: str, meaning: str) -> Array:
+        """Return the values of a column; refuse one that is impossible."""
+        values = self.numbers(column, meaning)
+        cells = self.table.column(column)
+        for i in np.flatnonzero(~np.isnan(values)).tolist():
+            values[i] = self._checked(float(values[i]), cells[i], meaning, self._where(i, column))
+        return values
 
-    def number(self, i: int, column: str, meaning: str) -> float | None:
-        """Return a number in SI units as it stands, None where it is missing."""
-        at = self.table.header.index(column)
-        cell = self.table.rows[i][at]
-        if cell.lower() in MISSING_CELLS:
-            return None
-        if column not in self.decimals:
-            self.decimals[column] = "," if self.table.decimal_comma([column]) else "."
-        found = number_of(cell, self.decimals[column])
-        if found is None:
-            thousands = "write it without marks between thousands"
-            advice = thousands if THOUSANDS.match(cell) else "leave the cell empty where a value is missing"
-            raise InputError(f"{self._where(i, column)}: {show(cell)} is not a number; {advice}.")
-        number, unit = found
-        return number * (self._factor(unit, meaning, self._where(i, column)) if unit else self._unit(column, at, meaning))
+    def numbers(self, column: str, meaning: str) -> Array:
+        """Return the numbers of a column as they stand."""
+        decimal = "," if self.table.decimal_comma([column]) else "."
+        found = np.full(len(self.table.rows), np.nan)
+        factor = math.nan
+        for i, cell in enumerate(self.table.column(column)):
+            if cell.lower() in MISSING_CELLS:
+                continue
+            read = number_of(cell, decimal)
+            if read is None:
+                thousands = "write it without marks between thousands"
+                advice = thousands if THOUSANDS.match(cell) else "leave the cell empty where a value is missing"
+                raise InputError(f"{self._where(i, column)}: {show(cell)} is not a number; {advice}.")
+            number, unit = read
+            if unit:
+                found[i] = number * self._factor(unit, meaning, self._where(i, column))
+                continue
+            if math.isnan(factor):
+                own = self.settings.units.get(meaning) or self.table.unit(column)
+                factor = self._factor(own, meaning, f"{self.table.path}: column {show(column)}")
+            found[i] = number * factor
+        return found
 
     def _where(self, i: int, column: str) -> str:
         return f"{self.table.path}: row {self.table.numbers[i]}, column {show(column)}"
-
-    def _unit(self, column: str, at: int, meaning: str) -> float:
-        """Return the SI value of the unit of a column: that of [fit.units], of the header, or of a row of units."""
-        key = (column, meaning)
-        if key not in self.factors:
-            row = self.table.units_row[at] if self.table.units_row else ""
-            unit = self.settings.units.get(meaning) or split_header(column)[1] or row
-            where = f"{self.table.path}: column {show(column)}"
-            self.factors[key] = self._factor(unit, meaning, where)
-        return self.factors[key]
 
     def _factor(self, unit: str, meaning: str, where: str) -> float:
         if meaning == "hersey_number" and has_dimension(unit or "-", "wavenumber"):
