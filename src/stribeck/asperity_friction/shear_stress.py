@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,7 +13,7 @@ from stribeck._types import Array
 from stribeck.asperity_friction.law import AsperityFriction
 from stribeck.contact_laws.law import WithArea, area_slope
 from stribeck.quantities.outputs import AREA
-from stribeck.quantities.schema import Input
+from stribeck.quantities.schema import Input, law
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["OverArea", "ShearStress"]
@@ -71,7 +71,7 @@ class OverArea(AsperityFriction):
         )
 
 
-@dataclass(frozen=True)
+@law
 class ShearStress(OverArea):
     r"""A shear stress of the real contacts, constant or a power of the sliding speed.
 

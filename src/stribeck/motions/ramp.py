@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.motions.motion import Motion, dense_where_slow
-from stribeck.quantities.schema import Input
+from stribeck.quantities.schema import Input, law
 
 __all__ = ["Ramp"]
 
 
-@dataclass(frozen=True)
+@law
 class Ramp(Motion):
     r"""A speed that changes evenly from one to another.
 

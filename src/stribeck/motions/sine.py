@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.motions.motion import Motion, dense_where_slow
-from stribeck.quantities.schema import Input
+from stribeck.quantities.schema import Input, law
 
 __all__ = ["Sine"]
 
 
-@dataclass(frozen=True)
+@law
 class Sine(Motion):
     r"""A stroke to and fro, from its middle.
 

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.motions.motion import Motion
-from stribeck.quantities.schema import Input
+from stribeck.quantities.schema import Input, law
 
 __all__ = ["Stop"]
 
 
-@dataclass(frozen=True)
+@law
 class Stop(Motion):
     r"""A speed that falls evenly to zero, and rest after it.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -12,12 +11,12 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.settings import ROUNDING
 from stribeck.profiles.profile import Departure, Parabola, Undeformed
 from stribeck.profiles.shape import Shape
-from stribeck.quantities.schema import Input
+from stribeck.quantities.schema import Input, law
 
 __all__ = ["Cylinder"]
 
 
-@dataclass(frozen=True)
+@law
 class Cylinder(Shape):
     r"""A cylinder, whose gap is :math:`x^2/2R`: a contact with this profile is that with its radius, to the last digit."""
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -14,7 +13,7 @@ from stribeck.profiles.check_profile import as_profile
 from stribeck.profiles.cylinder import Cylinder
 from stribeck.profiles.profile import Profile
 from stribeck.profiles.shape import Shape
-from stribeck.quantities.schema import Input
+from stribeck.quantities.schema import Input, law
 from stribeck.quantities.units import InputError
 
 __all__ = ["Grooved"]
@@ -22,7 +21,7 @@ __all__ = ["Grooved"]
 FADING_POWER = 8  # Power of the distance with which grooves fade at the ends of the grooved strip
 
 
-@dataclass(frozen=True)
+@law
 class Grooved(Shape):
     r"""A shape with grooves across the sliding direction, which fade at the ends of a strip of width 2B.
 

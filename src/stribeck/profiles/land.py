@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.profiles.shape import Shape
-from stribeck.quantities.schema import Input
+from stribeck.quantities.schema import Input, law
 
 __all__ = ["Land"]
 
 
-@dataclass(frozen=True)
+@law
 class Land(Shape):
     r"""A flat land of width 2b with edges that are rounded by parabolas.
 

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.profiles.shape import Shape
-from stribeck.quantities.schema import Input
+from stribeck.quantities.schema import Input, law
 
 __all__ = ["Lip"]
 
 
-@dataclass(frozen=True)
+@law
 class Lip(Shape):
     r"""A lip whose sides rise at two angles from a rounded tip.
 

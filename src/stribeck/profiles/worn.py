@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.profiles.shape import Shape
-from stribeck.quantities.schema import Input
+from stribeck.quantities.schema import Input, law
 
 __all__ = ["Worn"]
 
@@ -17,7 +16,7 @@ EDGE_SHARPNESS = 0.16  # Height over which the worn flat goes over into the cyli
 MAX_EXPONENT = 700.0  # Largest exponent that double precision holds
 
 
-@dataclass(frozen=True)
+@law
 class Worn(Shape):
     r"""A cylinder of radius R from which a depth w has been worn, with edges that are not sharp.
 

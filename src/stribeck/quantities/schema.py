@@ -92,7 +92,7 @@ class Input:
     def kind(self) -> str:
         """What a docstring says of its type."""
         kind = "str or float" if DIMENSIONS[self.dimension].unit else "float"
-        return kind if self.default is None else f"{kind}, optional"
+        return f"{kind}, optional" if self.optional or self.default is not None else kind
 
     @property
     def description(self) -> str:
@@ -176,12 +176,20 @@ Kind = TypeVar("Kind", bound=type)
 RAISES = "InputError\n    Where a value is impossible or its unit is wrong."  # Section of the docstring of every law
 
 
+# What some take beside their numbers.
+OTHERS = {
+    "base": "solid of sb.solids, optional\n    The shape of the body; a half-space without it.",
+    "body": "profile of sb.profiles, optional\n    The shape that has the grooves; a cylinder without it.",
+    "reversed": "bool\n    Whether the fluid enters from the other side.",
+}
+
+
 @dataclass_transform(frozen_default=True)
 def law(kind: Kind) -> Kind:
     """Return a frozen dataclass; its docstring says of its numbers what their declarations say."""
     made: Any = dataclass(frozen=True)(kind)
     words = {name: f"{row.kind}\n    {row.description}" for name, row in numbers_of(made).items()}
-    made.__doc__ = complete_docstring(made, words, raises=RAISES)
+    made.__doc__ = complete_docstring(made, OTHERS | words, raises=RAISES)
     return cast("Kind", made)
 
 

@@ -81,11 +81,6 @@ class StandardLinearSolid(_Viscoelastic):
     .. math:: J(t) = \frac1r + \Big(1 - \frac1r\Big) (1 - e^{-t/\tau})
 
     :math:`\tau` is that of creep; the relaxation time is :math:`\tau/r`.
-
-    Parameters
-    ----------
-    base : solid of sb.solids, optional
-        The shape of the body; a half-space without it.
     """
 
     kind: ClassVar[str] = "standard-linear-solid"
@@ -136,11 +131,6 @@ class Prony(_Viscoelastic):
     r"""The body with a Prony series of its relaxation.
 
     .. math:: E(t) = E_\infty \Big[1 + \sum_i g_i e^{-t/\tau_i}\Big]
-
-    Parameters
-    ----------
-    base : solid of sb.solids, optional
-        The shape of the body; a half-space without it.
 
     Notes
     -----
