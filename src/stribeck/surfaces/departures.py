@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stribeck.quantities.formats import format_si
+from stribeck.surfaces.height_parameters import moment
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum
 from stribeck.surfaces.topography import Topography
 
@@ -62,10 +63,7 @@ class Departures:
 
 def departures(topography: Topography, measured: MeasuredSpectrum, hurst: float) -> Departures:
     r"""Return texture and skewness of a scan."""
-    z = topography.heights - topography.heights.mean()
-    deviation = float(z.std())
-    rho = np.fft.ifftn(np.abs(np.fft.fftn(z)) ** 2).real / (z.size * deviation**2)
-    skewness, error = float(np.mean((z / deviation) ** 3)), math.sqrt(max(6 * float(np.sum(rho**3)) / z.size, 0.0))
+    skewness, error = moment(topography.heights, 3)
     if measured.is_line:
         return Departures(None, None, skewness, error)
     strength, modes = abs(measured.texture), float(measured.modes[measured.reliable].sum())

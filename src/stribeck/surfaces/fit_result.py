@@ -59,30 +59,17 @@ class Estimate:
 
 @dataclass(frozen=True, eq=False)
 class FitParameters:
-    """Parameters of a fit with their covariance, and the surface that belongs to them.
+    """Parameters of a fit with their covariance, and the surface that belongs to them."""
 
-    Attributes
-    ----------
-    theta : ndarray
-        Logarithm of the spectrum at ``centre``, Hurst exponent, logarithm of the roll-off if there is one, of the noise if
-        there is any, and of q0 and q1.
-    covariance : ndarray
-        Covariance of ``theta``; zero for a longest wave that was not seen.
-    centre : float
-        Logarithm of the wave number in the middle of the fit.
-    is_line : bool
-        Whether the spectrum is that along a line.
-    roll_off, q0_found, q1_found : bool
-        Whether the spectrum shows a roll-off, its longest and its shortest wave.
-    """
-
+    # Logarithm of the spectrum at `centre`, Hurst exponent, logarithms of the roll-off and of the noise, if there are such,
+    # and of q0 and q1
     theta: Array
-    covariance: Array
-    centre: float
-    is_line: bool
-    roll_off: bool
-    q0_found: bool
-    q1_found: bool
+    covariance: Array  # Of `theta`; zero for a longest wave that was not seen
+    centre: float  # Logarithm of the wave number in the middle of the fit
+    is_line: bool  # Whether the spectrum is that along a line
+    roll_off: bool  # Whether the spectrum shows a roll-off
+    q0_found: bool  # Whether it shows its longest wave
+    q1_found: bool  # Whether it shows its shortest wave
 
     def physical(self, theta: Array, corner: float = 1.0, lowest: float = 1.0) -> Array:
         """Return ln h_rms, H, ln q_r, ln q_0 and ln q_1, with roll-off and q_0 moved by factors to longer waves."""

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.files.cells import MISSING_CELLS, cells_of
+from stribeck.files.cells import MISSING_CELLS, NUMBER_WITH_POINT, cells_of
 from stribeck.files.reading import text_of
 from stribeck.files.text_table import values_of
 from stribeck.quantities.units import InputError, show, to_si
@@ -55,7 +55,6 @@ SPACING_RTOL = 0.005  # Relative difference of spacings, one given and one in th
 MAX_FILE_BYTES = 1_000_000_000
 
 _NO_DATA = re.compile(r"\bno[ _-]?(?:data|value)\b|\bout of range\b", re.IGNORECASE)
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _COUNTER = re.compile(r"|#|n|i|nr|no|idx|index|id|row|line|point|punkt|sample|pt|number|count|unnamed 0", re.IGNORECASE)
 
 
@@ -363,12 +362,10 @@ def _table(path: Path) -> _Table:
 
 def _longest_run(data: list[bool]) -> tuple[int, int]:
     """Return where the longest run of lines of numbers begins, and its length."""
-    best, begin = (0, 0), 0
-    for k, is_data in enumerate([*data, False]):
-        if not is_data:
-            best = max(best, (begin, k - begin), key=lambda run: run[1])
-            begin = k + 1
-    return best
+    edges = np.flatnonzero(np.diff([0, *data, 0]))
+    begins, lengths = edges[::2], edges[1::2] - edges[::2]
+    longest = int(lengths.argmax())
+    return int(begins[longest]), int(lengths[longest])
 
 
 def _count_filled(row: list[str]) -> int:
@@ -393,11 +390,9 @@ def _values(
     z = values if values.shape[1] > 3 else values[:, -1]
     beyond = ~np.isfinite(z) & ~np.isnan(z) | (np.abs(z) >= MAX_NUMBER)
     words = Counter(cell for row in cells for cell in (row if len(row) > 3 else row[-1:]) if cell and _is_missing(cell))
-    notes = [
-        f"{_points(count, 'reads', 'read')} {show(word)} and {_counts(count)} as missing." for word, count in words.items()
-    ]
+    notes = [_missing_note(count, "read", show(word)) for word, count in words.items()]
     for code in np.unique(z[beyond & np.isfinite(z)]):
-        notes.append(_code_note(float(code), z == code))
+        notes.append(_missing_note(int((z == code).sum()), "hold", f"{code:g}, a code for no height,"))
     z[beyond] = np.nan
     declared = {float(code.replace(",", ".")) for code in codes}
     for code in sorted(declared | {sign * size for size in MISSING_CODES for sign in (-1, 1)}):
@@ -405,28 +400,20 @@ def _values(
         rest = z[~here & ~np.isnan(z)]
         far = rest.size > 0 and np.abs(rest - code).min() > 3 * (rest.max() - rest.min())
         if here.any() and (code in declared or far):
-            notes.append(_code_note(code, here))
+            notes.append(_missing_note(int(here.sum()), "hold", f"{code:g}, a code for no height,"))
             z[here] = np.nan
     return values, notes
 
 
-def _code_note(code: float, here: Array) -> str:
-    count = int(here.sum())
-    return f"{_points(count, 'holds', 'hold')} {code:g}, a code for no height, and {_counts(count)} as missing."
-
-
-def _points(count: int, one: str, many: str) -> str:
-    return f"1 point {one}" if count == 1 else f"{count} points {many}"
-
-
-def _counts(count: int) -> str:
-    return "counts" if count == 1 else "count"
+def _missing_note(count: int, verb: str, what: str) -> str:
+    if count == 1:
+        return f"1 point {verb}s {what} and counts as missing."
+    return f"{count} points {verb} {what} and count as missing."
 
 
 def _is_data(line: str) -> bool:
-    cells = [cell.strip().strip('"').strip() for cell in re.split(r"[;\t, ]+", line) if cell.strip()]
-    cells = [cell for cell in cells if cell]
-    numbers = [cell for cell in cells if _NUMBER.fullmatch(cell)]
+    cells = [cell for cell in (part.strip('" ') for part in re.split(r"[;\t, ]+", line)) if cell]
+    numbers = [cell for cell in cells if NUMBER_WITH_POINT.fullmatch(cell)]
     return bool(numbers) and all(cell in numbers or _is_missing(cell) for cell in cells)
 
 
