@@ -1,6 +1,7 @@
 """Every number that users give, and every value that it cannot have: the sentence names key, value and what is allowed."""
 
 import functools
+import inspect
 import json
 import math
 import re
@@ -9,6 +10,7 @@ from typing import Any, NamedTuple
 
 import pytest
 from command_line import call
+from numpydoc.docscrape import get_doc_object
 
 import stribeck as sb
 from stribeck.cases.facts import FACTS
@@ -220,3 +222,13 @@ def test_the_page_refuses_what_a_number_cannot_be():
         return refusal(place.field, str(value))
 
     assert faults(say) == ""
+
+
+def test_the_docstring_of_a_law_says_each_of_its_arguments():
+    laws = {law for kind in KINDS.values() for law in kind.laws.values()} | set(NAMED_LAWS.values())
+    laws = [law for law in laws if numbers_of(law)]
+    assert len(laws) >= 15
+    for law in laws:
+        said = get_doc_object(law)
+        assert [each.name for each in said["Parameters"]] == list(inspect.signature(law).parameters), law
+        assert all("".join(each.desc) for each in said["Parameters"]) and said["Raises"], law

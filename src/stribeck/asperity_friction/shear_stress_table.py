@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
 
 from stribeck.asperity_friction.shear_stress import OverArea
-from stribeck.quantities.schema import Series
+from stribeck.quantities.schema import Series, law
 from stribeck.quantities.units import InputError
 
 __all__ = ["ShearStressTable"]
 
 
-@dataclass(frozen=True)
+@law
 class ShearStressTable(OverArea):
     r"""A shear stress of the real contacts that was measured at several sliding speeds.
 
