@@ -2,7 +2,6 @@
 
 import asyncio
 import csv
-import gc
 import io
 import json
 import math
@@ -966,7 +965,8 @@ def test_pictures_are_whole_and_hold_pinned_and_measured_curves(answer):
     assert files.content("curve.png", shown).startswith(b"\x89PNG")
     assert ElementTree.fromstring(files.content("state.svg", shown)).tag.endswith("svg")
     figure = files.figure_of(shown, "curve")
-    assert {"pinned", "m.csv"} <= {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
+    [legend] = figure.legends
+    assert {"pinned", "m.csv", "from the fluid"} <= {text.get_text() for text in legend.get_texts()}
 
 
 def test_a_pin_is_named_after_what_differs_from_the_start():
@@ -1030,20 +1030,6 @@ def test_a_port_in_use_is_refused_and_another_is_found():
         assert {first.getsockname()[1], second.getsockname()[1]} <= set(server.DEFAULT_PORTS)
     with pytest.raises(sb.InputError, match="port = 70000 must be a whole number from 1 to 65535"):
         server.listen(70000)
-
-
-def test_what_a_page_would_wait_for_is_prepared_beside_it(monkeypatch):
-    units._registry.cache_clear()
-    monkeypatch.setattr(server, "PREPARE_AFTER_SECONDS", 0.0)
-    try:
-        server.prepare()
-        assert gc.get_freeze_count()
-        deadline = time.monotonic() + 60
-        while not units._registry.cache_info().currsize and time.monotonic() < deadline:
-            time.sleep(0.02)
-    finally:
-        gc.unfreeze()
-    assert units._registry.cache_info().currsize
 
 
 # --- the command ---

@@ -199,7 +199,7 @@ def residual_chart(found: Fit) -> Options:
         series.append(_series(f"measured{k % 3}", name, "points", _pairs(x[mine], residuals[mine])))
     unit = {"m s-1": "m/s", "m-1": "1/m", "1": ""}.get(UNITS[data.abscissa], UNITS[data.abscissa])
     across = axis(data.abscissa.replace("_", " "), unit, *ends)
-    return {"x": across, "y": axis("residual", "standard errors", -reach, reach, log=False), "series": series}
+    return {"x": across, "y": axis("residual/error", "", -reach, reach, log=False), "series": series}
 
 
 def axis(name: str, unit: str, low: float, high: float, log: bool = True) -> Options:

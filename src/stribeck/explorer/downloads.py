@@ -21,6 +21,7 @@ from stribeck.explorer.curves import hersey_scale
 from stribeck.explorer.inputs.inputs import Inputs, refuse_files
 from stribeck.files.datasets import write_csv
 from stribeck.files.toml import parse_toml, toml_text
+from stribeck.plot.curve import add_curves
 from stribeck.plot.style import INK, SERIES
 from stribeck.quantities.units import InputError
 
@@ -176,23 +177,17 @@ def figure_of(shown: Answer, what: str) -> Any:
     assert shown.curve is not None
     band, verdict = shown.curve.band, shown.checks.headline
     figure = curve.plot(title=inputs.case.title, abscissa=inputs.abscissa, band=band, verdict=verdict)
-    axes = figure.axes[0]
-    added, heights = [], [np.array(axes.get_ylim())]
+    added: list[tuple[Any, Any, dict[str, Any]]] = []
     for i, pin in enumerate(each for each in shown.pins if each.curve is not None):
         assert pin.curve is not None
         places = pin.curve.speed * (hersey_scale(pin.contact) if hersey else 1.0)
-        friction = pin.curve.sizes[inputs.case.definition]
-        style: Any = {"color": SERIES[-1 - i % len(SERIES)], "ls": (0, (3 + 2 * i, 2)), "lw": 1.4}
-        added += axes.plot(places, friction, label=pin.name, **style)
-        heights.append(friction[friction > 0])
+        look = {"color": SERIES[-1 - i % len(SERIES)], "ls": (0, (3 + 2 * i, 2)), "lw": 1.4, "label": pin.name}
+        added.append((places, pin.curve.sizes[inputs.case.definition], look))
     for each in shown.measured:
         places = each.places(inputs.contact, inputs.abscissa) * (hersey_scale(inputs.contact) if hersey else 1.0)
-        added += axes.plot(places, each.friction, "o", ms=4, mfc="none", mec=INK, label=each.name)
-        heights.append(each.friction[each.friction > 0])
-    if added:  # the others are named below the picture
-        all_heights = np.concatenate(heights)
-        axes.set_ylim(all_heights.min(), all_heights.max())
-        axes.legend(handles=added, frameon=False, fontsize=8)
+        added.append((places, each.friction, {"fmt": "o", "ms": 4, "mfc": "none", "mec": INK, "label": each.name}))
+    if added:
+        add_curves(figure, added)
     return figure
 
 

@@ -271,6 +271,9 @@ export default {
     fitting(now) {
       if (now) [this.fitted, this.freed] = [null, now.inputs.filter(([, , chosen]) => chosen).map(([name]) => name)];
     },
+    geometry() {
+      this.fitting = this.fitted = null;
+    },
     address(query) {
       history.replaceState(null, "", query);
     },

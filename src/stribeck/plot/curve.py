@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import partial
 from typing import Any, Literal, Protocol, get_args
 
@@ -132,7 +133,7 @@ def draw_report(curve: StribeckCurve, data: Measurements | None, uncertainty: Un
     """Draw the curve of a contact for a report: with measured points and the 95 % interval of the friction."""
     contact = curve.contact
     assert contact is not None
-    figure, left, right = _draw_curve(curve, [], [], "Friction and film over the speed")
+    figure, left, _ = _draw_curve(curve, [], [], "Friction and film over the speed")
     if uncertainty is not None:
         spread = uncertainty["friction"]
         (low, high), middle = sorted(map(abs, spread.interval_95)), abs(spread.value)
@@ -142,13 +143,21 @@ def draw_report(curve: StribeckCurve, data: Measurements | None, uncertainty: Un
     if data is not None:
         # Points measured against another quantity are converted to speed.
         speed = data.values * RULES[contact.groups.geometry].speed_per(data.abscissa, contact)
-        left.errorbar(speed, data.friction, data.error, fmt=".", color=GREY, ms=5, lw=0.8, label="measured", zorder=1)
-        _include(left, speed, data.friction)
-        right.set_xlim(left.get_xlim())
-        for legend in figure.legends:
-            legend.remove()
-        add_legend(figure, (left, right))
+        look: dict[str, Any] = {"fmt": ".", "color": GREY, "ms": 5, "lw": 0.8, "zorder": 1}
+        add_curves(figure, [(speed, data.friction, {"yerr": data.error, "label": "measured", **look})])
     return figure
+
+
+def add_curves(figure: Figure, added: Sequence[tuple[Any, Any, dict[str, Any]]]) -> None:
+    """Draw further friction over the abscissa of a curve's picture, and name it in the legend below."""
+    left, right = figure.axes[:2]
+    for x, friction, look in added:
+        left.errorbar(x, friction, **look)
+        _include(left, x, friction)
+    right.set_xlim(left.get_xlim())
+    for legend in figure.legends:
+        legend.remove()
+    add_legend(figure, (left, right))
 
 
 def _include(axes: Axes, x: Any, y: Any) -> None:
