@@ -1114,7 +1114,7 @@ def test_a_surface_without_unit_is_told_what_the_page_can_do():
 
 def test_a_file_that_holds_neither_friction_nor_heights_is_refused_with_both_reasons():
     with pytest.raises(sb.InputError, match=r"^a.csv.* As a file of heights: a.csv"):
-        read_file("measured", "a.csv", b"x, y\nno, numbers\n", START.contact, seconds=120)
+        read_file("measured", "a.csv", b"x, y\nno, numbers\n", START.contact)
 
 
 def test_a_file_of_heights_that_is_none_is_refused():

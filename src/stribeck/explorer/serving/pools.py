@@ -10,7 +10,7 @@ from typing import Any
 from stribeck.numerics.ending import ended_by
 
 FILES = ThreadPoolExecutor(2, "explorer-files")
-"""Of all pages: addresses, and files, which are read in processes that end by themselves."""
+"""Of all pages: addresses and files."""
 
 
 class Threads:
