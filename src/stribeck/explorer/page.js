@@ -138,6 +138,7 @@ export default {
         <input class="hidden-upload" ref="upload" type="file" multiple :accept="endings" aria-hidden="true" tabindex="-1" @change="upload">
         <q-btn flat dense no-caps icon="upload_file" label="Load" title="Load a case, a measured curve, a surface or an example"><q-menu><q-list>
           <q-item clickable v-close-popup @click="$refs.upload.click()"><q-item-section>File: a case (TOML), a measured curve (CSV) or a height map ...</q-item-section></q-item>
+          <q-item-label header>Examples</q-item-label>
           <q-item v-for="each in examples" :key="each" clickable v-close-popup @click="act('example', each)"><q-item-section>{{ each }}</q-item-section></q-item>
         </q-list></q-menu></q-btn>
         <q-btn flat dense no-caps icon="download" label="Save" title="Download picture, data or case, or copy the link or the code"><q-menu><q-list>
