@@ -16,6 +16,8 @@ IMAGES = Path(__file__).parent / "images"
 DESK = {"viewport": {"width": 1440, "height": 900}}
 PHONE = {"viewport": {"width": 390, "height": 780}, "device_scale_factor": 2, "is_mobile": True, "has_touch": True}
 
+SOLVED = ".ways tr[data-key=roughness] td[data-value]"  # What to change, which is solved last
+
 
 def main() -> None:
     """Start the server, take the pictures, and stop it."""
@@ -47,7 +49,7 @@ def opened(page: Page, address: str) -> Page:
     """Open the page and wait until it rests."""
     page.set_default_timeout(120_000)  # of a machine with other work
     page.goto(address)
-    page.wait_for_selector(".ways tr[data-key=viscosity]")
+    page.wait_for_selector(SOLVED)
     page.wait_for_timeout(1000)
     return page
 
@@ -60,7 +62,8 @@ def compare(page: Page) -> None:
     page.wait_for_timeout(1500)
     page.evaluate("document.activeElement.blur()")
     page.mouse.move(0, 0)
-    page.wait_for_timeout(3000)
+    page.wait_for_selector(SOLVED)
+    page.wait_for_timeout(1000)
 
 
 if __name__ == "__main__":

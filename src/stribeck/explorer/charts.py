@@ -276,7 +276,7 @@ def _range(values: Array) -> list[float]:
 def _friction_limits(values: Sequence[float]) -> tuple[float, float]:
     """Return ends of the axis of friction at few places, so that it stays still while a slider moves."""
     positive = [value for value in values if value > 0] or [1e-3, 1.0]
-    return round_down(min(positive) / 3), round_up(max(positive) * 1.25)
+    return round_down(min(positive) / 3), round_up(max(positive) * 1.6)  # with room for the names of the regimes
 
 
 def _along(answer: Answer) -> tuple[Array, Options]:
