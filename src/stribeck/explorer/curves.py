@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -187,28 +187,10 @@ def curve_from_atlas(contact: Contact, definition: Definition, speeds: tuple[flo
     return Curve(stribeck_curve(contact, speed=ends, points=CURVE_POINTS, definition=definition, method="atlas"), marks)
 
 
-def solve_curve(
-    contact: Contact,
-    definition: Definition,
-    report: Report,
-    points: int,
-    rtol: float,
-    speeds: tuple[float, float] | None = None,
-) -> StribeckCurve:
-    """Return the Stribeck curve of a contact and report the finished part."""
-    return stribeck_curve(
-        contact,
-        speed=speeds,
-        points=points,
-        rtol=rtol,
-        definition=definition,
-        on_point=lambda done, of: report(done / of),
-    )
-
-
 def solved_curve(contact: Contact, definition: Definition, report: Report, rtol: float = SOLVED_RTOL) -> Curve:
     """Return a curve of solved states, with the transitions located on them."""
-    found = solve_curve(contact, definition, report, SOLVED_POINTS[contact.INPUTS.geometry], rtol)
+    settings: Any = {"definition": definition, "rtol": rtol, "on_point": lambda done, of: report(done / of)}
+    found = stribeck_curve(contact, points=SOLVED_POINTS[contact.INPUTS.geometry], **settings)
     if len(found) < 2:
         raise SolveError(found.outcome, None, found.outcome.value)
     if len(found) < CURVE_POINTS:
@@ -256,7 +238,8 @@ def _row(contact: Contact, definition: Definition, speeds: tuple[float, float], 
     """Return where boundary lubrication ends, hydrodynamic begins and friction is at its minimum."""
     solved = SOLVED_ROWS[contact.INPUTS.geometry]
     low, high = speeds[0] / solved.room, speeds[1] * solved.room
-    found = solve_curve(contact, definition, report, solved.points, solved.rtol, (low, high))
+    settings: Any = {"definition": definition, "rtol": solved.rtol, "on_point": lambda done, of: report(done / of)}
+    found = stribeck_curve(contact, speed=(low, high), points=solved.points, **settings)
     marks = {name: mark.value for name, mark in _marks_of(found).items()}
     slow = found.regimes[0]
     beyond = math.inf if found.values[-1] >= 0.99 * high else math.nan

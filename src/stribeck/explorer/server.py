@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from stribeck.cases.reading import load_case
-from stribeck.explorer.downloads import KINDS, name_of, shown_name
+from stribeck.explorer.downloads import KINDS, examples, name_of, shown_name
 from stribeck.explorer.inputs.inputs import Inputs, from_case
 from stribeck.explorer.inputs.url import MAX_URL_LENGTH, check_length, decode
 from stribeck.explorer.serving.guard import Guard, check_host
@@ -149,18 +149,8 @@ def build(start: Inputs, port: int, token: str) -> None:
 
 def example() -> Inputs:
     """Return what is shown where no case is given: a soft cylinder in the range of the contact law."""
-    contact = {
-        "radius": "10 mm",
-        "modulus": "2.7 MPa",
-        "load": "30 N/m",
-        "viscosity": "50 mPa*s",
-        "speed": "1 mm/s",
-        "roughness": "1 um",
-        "alpha": 2.0,
-        "beta": 0.06,
-        "boundary_friction": 0.7,
-    }
-    return Inputs.of({"title": "PDMS cylinder in glycerol-water", "contact": contact})
+    tables = load_case(examples()["PDMS cylinder in glycerol-water"]).tables
+    return Inputs.of({name: tables[name] for name in ("title", "contact")})
 
 
 def listen(wanted: int | None, host: str = HOST) -> socket.socket:

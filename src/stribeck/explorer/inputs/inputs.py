@@ -313,10 +313,10 @@ def position(inputs: Inputs, name: str) -> float:
     return math.log10(min(max(value_of(inputs, name), low), high))
 
 
-def number_text(inputs: Inputs, name: str, digits: int = 4) -> str:
+def number_text(inputs: Inputs, name: str) -> str:
     """Return the number that stands in a field, in its unit."""
     value = value_of(inputs, name)
-    return "" if math.isinf(value) else f"{value / _factor(inputs, name):.{digits}g}"
+    return "" if math.isinf(value) else f"{value / _factor(inputs, name):.4g}"
 
 
 def row_of(inputs: Inputs, name: str) -> dict[str, Any]:
