@@ -103,18 +103,6 @@ class Equations:
         """The film whose gradient vanishes at the exit: that of low rates, which does so with G, but smoothly."""
         return getattr(self.film, "at_low_rates", self.film)
 
-    def cavity_stretch(self, y: Array) -> Array | None:
-        """Return stretch of the cavity, a column of stacked states; None where the film does not re-form."""
-        found: Array | None = self.fields(y).cavity_stretch
-        return found
-
-    def positions(self, y: Array) -> Array:
-        """Return x at the nodes [a]."""
-        nodes, d = self.operators.mesh.nodes, self.cavity_stretch(y)
-        if not self.operators.has_exit:
-            return nodes
-        return np.asarray(y[..., self.layout.exit] + (nodes if d is None else d * nodes))
-
     def far_gap(self, u: Fields) -> Callable[[Array], Any]:
         """Return the far gap as a function of the coordinate, up to a smooth function of the inverse coordinate."""
         solid, d = self.operators.model.solid, u.cavity_stretch

@@ -169,11 +169,6 @@ def layout(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> tuple[fl
     return min(0.5, max(speed**0.4, decay ** (2.0 / 3.0)) / MODES_RATIO), scale
 
 
-def edge_width(speed: float, law: ContactLaw, model: Model) -> float:
-    """Return the width of the layer at the edge of the contact over the scale of the contact."""
-    return MODES_RATIO * layout(speed, law, model)[0]
-
-
 def is_too_thin(speed: float, law: ContactLaw) -> bool:
     """Return whether film and roughness are so thin that no mesh within the limits has enough angles."""
     return film_scale(speed) > float(np.max(law.decay_length)) and layout(speed, law)[0] < MIN_PANEL_WIDTH

@@ -20,7 +20,6 @@ from stribeck.equations.point.mesh_choice import (
     MeshTooLargeError,
     Resolution,
     bytes_of,
-    edge_width,
     fits,
     in_tens,
     operators_of,
@@ -44,7 +43,6 @@ from stribeck.numerics.settings import (
     MINIMUM_RTOL_FACTOR,
     MODES_RATIO,
     NEGLIGIBLE,
-    SAFETY,
     SHARE,
 )
 from stribeck.quantities.outcome import Outcome
@@ -120,15 +118,12 @@ def first_mesh(
     """Return the first mesh from cold, and a guess with its mesh."""
     guess = solve_on_split_panels(guess, speed, law)
     start, mesh = guess.unknowns, guess.mesh
-    # The minimum film of a smooth contact is in side lobes, as narrow as this power of the edge.
-    lobes = edge_width(speed, law, model) ** (-2.0 / 3.0) if guess.contact_pressure.max() < COARSE_RTOL else 0.0
     if model.cavitation is Cavitation.NONE:
         amplitudes = modal_amplitudes(guess)
         # Pressures at an edge fall by this factor a degree.
         degree = math.ceil(math.log(LEGENDRE_DECAY / rtol) / math.log(LEGENDRE_DECAY))
         of_minimum = min(1.0, MINIMUM_RTOL_FACTOR * rtol)
         modes = max(MODES_RATIO * modes_for(amplitudes, math.sqrt(rtol)), modes_for(amplitudes, NEGLIGIBLE**2 * of_minimum))
-        modes = max(modes, math.log(SAFETY / of_minimum) * lobes)
         wanted = replace(
             guess.resolution,
             degree=min(MAX_DEGREE, max(LEAST_DEGREE, degree)),
@@ -136,8 +131,6 @@ def first_mesh(
         )
         return limit_modes(wanted), start, mesh
     wanted = resolution(speed, law, LEAST_DEGREE + 1, in_tens(LEAST_MODES), model)
-    if -math.log(NEGLIGIBLE) * lobes > wanted.coarser().modes:  # so few would tell nothing of the error
-        wanted = wanted.finer()
     if wanted.doublings == guess.resolution.doublings:
         wanted = replace(wanted, splits=guess.resolution.splits)
     if rigid_height(speed) > 1.0 and model.cavitation is Cavitation.EXIT:

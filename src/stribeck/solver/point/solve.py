@@ -17,7 +17,7 @@ from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.equations.point.dry import dry_contact, hertz_gap
 from stribeck.equations.point.films import is_isotropic
 from stribeck.equations.point.iteration import Iterated
-from stribeck.equations.point.mesh_choice import MeshTooLargeError, fits, layout, operators_of, resolution
+from stribeck.equations.point.mesh_choice import MeshTooLargeError, operators_of, resolution
 from stribeck.equations.point.observables import OBSERVABLES, identity_error
 from stribeck.equations.point.planes import PLANES
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
@@ -27,7 +27,7 @@ from stribeck.fluids.laws import RateLaw
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.rheology.viscosity import Constant, Incompressible
 from stribeck.fluids.shear_thinning import ShearThinning
-from stribeck.numerics.settings import MAX_DEGREE, MAX_RTOL, MIN_RTOL_OF_BALLS, NEGLIGIBLE, SAFETY
+from stribeck.numerics.settings import MAX_DEGREE, MAX_RTOL, MIN_RTOL_OF_BALLS, NEGLIGIBLE
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solids.plane import BODIES, MIN_LAYER_THICKNESS
@@ -89,11 +89,6 @@ def solve_from(
     speed, law, model = float(groups.speed), contact_law(groups), effective_model(groups.model)
     if same_kinds(pair.fine.resolution.model, model):
         pair = pair.relabelled(model)
-    cold = None
-    if _is_far(pair, speed, law):
-        cold = solve_cold(groups, rtol)
-        if cold.outcome.ok:
-            return cold
     warm = None
     if pair.fine.resolution.model == model:
         refined, followed = _methods(model)
@@ -104,15 +99,8 @@ def solve_from(
                 warm = _state(groups, rtol, found if held else refined(speed, law, found.fine, rtol, model, found))
     if warm is not None and warm.outcome.ok:
         return warm
-    cold = solve_cold(groups, rtol) if cold is None else cold
+    cold = solve_cold(groups, rtol)
     return cold if cold.outcome.ok or warm is None else warm
-
-
-def _is_far(neighbour: Pair, speed: float, law: ContactLaw) -> bool:
-    """Return whether a neighbour is so far that its panels do not serve and a cold start is cheaper."""
-    fine, model = neighbour.fine, neighbour.fine.resolution.model
-    here, there = layout(speed, law, model)[0], layout(fine.equations.speed, fine.equations.law, model)[0]
-    return max(here, there) > SAFETY * min(here, there) and not fits(fine.resolution, speed, law)
 
 
 def same_kinds(model: Model, other: Model) -> bool:

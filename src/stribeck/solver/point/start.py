@@ -25,12 +25,11 @@ from stribeck.equations.point.mesh_choice import (
     is_too_thin,
     operators_of,
     resolution,
-    split_where_poor,
 )
 from stribeck.equations.point.system import Unknowns
 from stribeck.fluids.blend import blend
 from stribeck.numerics.continuation import Steps, extrapolation_weights
-from stribeck.numerics.settings import COARSE_RTOL, LEAST_DEGREE, LEAST_MODES, MAX_REFINEMENTS, NEGLIGIBLE, SAFETY
+from stribeck.numerics.settings import COARSE_RTOL, LEAST_DEGREE, LEAST_MODES, NEGLIGIBLE, SAFETY
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import Level, extrapolate_levels, solve_level
 
@@ -69,23 +68,14 @@ class WithCushion:
         return np.logaddexp(self.law.log_pressure(gap), (self.film - gap) / self.own_decay)
 
 
-def first_guess(
-    found: Resolution, speed: float, law: ContactLaw, thickness_ratio: float = 1.0
-) -> tuple[Resolution, Unknowns] | None:
-    """Return the first guess and a mesh for it; None if the dry contact fails."""
+def first_guess(found: Resolution, speed: float, law: ContactLaw, thickness_ratio: float = 1.0) -> Unknowns | None:
+    """Return the first guess on a mesh; None if the dry contact fails."""
     cushioned = WithCushion(law, thickness_ratio * film_scale(film_speed(speed, found.model)))
-    for _ in range(MAX_REFINEMENTS):
-        solved, operators = found, operators_of(found)
-        dry = dry_contact(operators, cushioned, TOLERANCE)
-        if not dry.outcome.ok or not dry.gap.min() > 0:
-            return None
-        fluid = cushioned.cushion(dry.gap)
-        better = split_where_poor(found, operators.mesh, fluid, law.pressure(dry.gap))
-        if better == found:
-            break
-        found = better
-    modes = found.modes
-    return solved, Unknowns(np.tile(dry.gap, (modes, 1)), np.tile(fluid, (modes, 1)), dry.offset)
+    dry = dry_contact(operators_of(found), cushioned, TOLERANCE)
+    if not dry.outcome.ok or not dry.gap.min() > 0:
+        return None
+    gap, fluid = (np.tile(each, (found.modes, 1)) for each in (dry.gap, cushioned.cushion(dry.gap)))
+    return Unknowns(gap, fluid, dry.offset)
 
 
 def first_state(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> Level | Outcome:
@@ -106,10 +96,10 @@ def first_state(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> Lev
 
 def _direct(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
     for thickness_ratio in (1.0, SAFETY):
-        guess = first_guess(resolution(speed, law, LEAST_DEGREE, LEAST_MODES, model), speed, law, thickness_ratio)
+        found = resolution(speed, law, LEAST_DEGREE, LEAST_MODES, model)
+        guess = first_guess(found, speed, law, thickness_ratio)
         if guess is not None:
-            found, y = guess
-            yield solve_level(found, speed, law, y, operators_of(found).mesh, TOLERANCE)
+            yield solve_level(found, speed, law, guess, operators_of(found).mesh, TOLERANCE)
 
 
 def _from_newtonian(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
