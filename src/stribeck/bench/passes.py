@@ -17,11 +17,10 @@ from stribeck.fits.table.repeats import SAME_SPEED
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.units import InputError
 
-__all__ = ["KEPT", "LEFT_OUT", "Pass", "Series", "passes_of"]
+__all__ = ["KEPT", "Pass", "Series", "passes_of"]
 
 # What becomes of a row.
 KEPT, AT_REST, CHANGING, STARTING, RUN_IN = range(5)
-LEFT_OUT = ("kept", "at rest", "speed changes", "start of a step", "run-in")
 
 TURNING = 0.1  # Length over that of the usual stroke below which a stretch of one direction is noise around rest
 
