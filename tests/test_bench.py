@@ -94,6 +94,7 @@ def test_the_zero_of_the_force_and_its_drift_are_found_and_taken_off(written):
     assert (
         "the zero of the force is off by 6" in sentence and "drifts by 4" in sentence
     )  # 65 mN in the middle, 47 mN between passes
+    assert (found.difference_error < 0.03).all()
     # Two forces of 0.04 to 0.09 N each way over 2 N.
     assert found.difference[0] == pytest.approx(0.043, abs=0.01) and found.difference[-1] == pytest.approx(0.087, abs=0.003)
 
@@ -511,16 +512,21 @@ def test_the_slope_of_friction_within_a_bin_is_no_scatter(written):
 def test_the_scatter_of_passes_is_the_error_where_it_is_more_than_that_within_them(written):
     rng = np.random.default_rng(8)
 
-    def read(shifts):
-        runs = [stepped(rng, 60, speeds=[1.0, 10.0], ways=(1,), start=0, zero=0, drift=0, amplitude=0.002) for _ in shifts]
+    def read(shifts, run_in="keep"):
+        runs = [
+            stepped(rng, 60, speeds=[1.0, 10.0, 100.0], ways=(1,), start=0, zero=0, drift=0, amplitude=0.002) for _ in shifts
+        ]
         rows = np.vstack([run * [1, 1, 1, 1 + shift] for run, shift in zip(runs, shifts, strict=True)])
         rows[:, 0] = 0.1 * np.arange(len(rows))
-        return sb.bench.read(written(text_of(rows)), sb.FitSettings(run_in="keep"))
+        return sb.bench.read(written(text_of(rows)), sb.FitSettings(run_in=run_in))
 
     wide, *quiet = read([-0.1, 0.1, -0.08, 0.06, 0.0, 0.02]), *(read([0.0] * 6) for _ in range(8))
     assert note_of(wide, "Passes at the same speed differ by")
     assert not any(note_of(each, "Passes at the same speed") for each in quiet)
     narrow = quiet[0]
+    after = read([0.3, 0.0, 0.0, 0.0], "leave")  # a first run that differs from those that agree is run-in
+    assert note_of(after, "Left out as run-in") and np.sum(after.status == 4) > 80
+    assert after.friction == pytest.approx(curve(np.array([1.0, 10.0, 100.0])), rel=0.01)
     assert (wide.half_width > 8 * narrow.half_width).all()
 
 
@@ -549,3 +555,22 @@ def test_a_load_of_a_cylinder_is_per_length_and_the_curve_says_so(written, tmp_p
     assert found.inputs == ({"load": 2.0, "load_per_length": 30.0},)
     found.to_csv(tmp_path / "curve.csv")
     assert sb.read_measurements(tmp_path / "curve.csv").inputs == ({"load": 30.0},)
+
+
+@pytest.mark.quick
+def test_a_step_may_have_a_noisy_speed(written):
+    set_speed = np.repeat([10.0, 100.0], 100)
+    speed = set_speed * np.exp(0.15 * np.random.default_rng(17).normal(size=200))
+    rows = np.column_stack([np.arange(200.0), speed, curve(set_speed)])
+    found = sb.bench.read(written(text_of(rows, "Time [s];Speed [mm/s];COF")))
+    assert (found.status == 0).all() and found.speed == pytest.approx([0.01, 0.1], rel=0.05)
+
+
+@pytest.mark.quick
+def test_the_force_tells_the_direction_where_the_speed_is_a_size_and_its_sign_does_not_matter(written):
+    rows = stepped(np.random.default_rng(1), amplitude=0.005, drift=0)
+    found = [sb.bench.read(written(text_of(rows * factors))) for factors in ([1, 1, 1, 1], [1, 1, 1, -1])]
+    sizes = sb.bench.read(written(text_of(np.column_stack([rows[:, 0], np.abs(rows[:, 1]), rows[:, 2:]]))))
+    for other in (found[1], sizes):
+        assert other.friction == pytest.approx(found[0].friction, rel=1e-6)
+        assert np.abs(other.difference) == pytest.approx(np.abs(found[0].difference), rel=1e-6)

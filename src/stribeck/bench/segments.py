@@ -19,8 +19,6 @@ __all__ = ["Part", "directions", "parts_of"]
 
 MEDIAN_OF_DIFFERENCES = 0.954  # Median size of the difference of two normal numbers, over their standard deviation
 
-DISTINCT = 3.0  # Standard deviations from which a speed is distinguished from rest
-
 
 @dataclass(frozen=True)
 class Part:
@@ -81,9 +79,8 @@ def _steps(y: Array) -> list[tuple[int, int, bool]]:
     steady = []
     for k, (first, end) in enumerate(pieces):
         nearest = min([*apart[max(0, k - 1) : k + 1]], default=np.inf)
-        rests = end - first >= FEWEST and float(y[first:end].std()) < 1 / DISTINCT
         # On a ramp a piece changes by as much as it lies from the next; within a step it hardly changes.
-        steady.append(rests and changes[k] < max(nearest / 2, SAME_SPEED))
+        steady.append(end - first >= FEWEST and changes[k] < max(nearest / 2, SAME_SPEED))
     joined: list[tuple[int, int, bool]] = []
     for k, (first, end) in enumerate(pieces):
         if joined and steady[k] and joined[-1][2] and apart[k - 1] < LARGEST_NOISE:
