@@ -61,7 +61,7 @@ def weakening_number(groups: Groups, boundary_friction: float = 1.0, beta: float
     "Of the shape of load and roughness.",
     kind="ndarray of bool",
     source="[BP] Eq. (Lambda_solution), whose condition is not stated there",
-    form='By which friction: ``"uniform"`` by :func:`.rough.mixed.friction`, the others by that of [BP], as above.',
+    form='``"uniform"``: by :func:`stribeck.asymptotics.rough.mixed.friction`; the others: by that of [BP], as above.',
 )
 def has_minimum(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, form: Form = "uniform") -> Flags:
     r"""Return whether friction has a minimum over the speed.
@@ -99,12 +99,6 @@ def roughness_without_minimum(
 
     Parameters
     ----------
-    load : float or array_like
-        Load group [-].
-    boundary_friction : float
-        Friction coefficient of the dry contact [-].
-    beta : float
-        Coefficient of the contact law [-].
     criterion : {"uniform", "plateau", "lines", "weakening"}
         ``"uniform"``: :func:`stribeck.asymptotics.rough.mixed.friction` no longer falls anywhere.
         ``"plateau"``: the minimum of [BP]'s friction reaches boundary_friction, what its Conclusion names.
