@@ -125,13 +125,22 @@ def _with_viscosity(table: dict[str, Any], contact: Any, source: str, folder: Pa
 def _liquid(table: dict[str, Any], folder: Path | None) -> Liquid | FlowCurve:
     if "preset" in table:
         return PRESETS[table["preset"]](**{key: table[key] for key in CONDITIONS if key in table})
-    file, law = table["flow_curve"], table.get("model")
+    path, changed = _file_of("flow_curve", table, folder, "[fluid] of a case; give the viscosity and the law here")
+    return _flow_curve(path, changed, table.get("model"))
+
+
+def _master_curve(table: dict[str, Any], folder: Path | None) -> PronyFit:
+    return _curve_of_file(*_file_of("master_curve", table, folder, "[solid] of a case; give relaxation_times and moduli here"))
+
+
+def _file_of(key: str, table: dict[str, Any], folder: Path | None, place: str) -> tuple[Path, int]:
+    """Return the path of the file that a key names, and when it changed."""
     if folder is None:
-        raise InputError(f"flow_curve = {show(file)} stands in [fluid] of a case; give the viscosity and the law here.")
-    if not isinstance(file, str):
-        raise InputError(f"flow_curve = {show(file)} must be text in quotes, the name of a file.")
-    path = folder / file
-    return _flow_curve(path, path.stat().st_mtime_ns if path.is_file() else 0, law)
+        raise InputError(f"{key} = {show(table[key])} stands in {place}.")
+    if not isinstance(table[key], str):
+        raise InputError(f"{key} = {show(table[key])} must be text in quotes, the name of a file.")
+    path = folder / table[key]
+    return path, path.stat().st_mtime_ns if path.is_file() else 0
 
 
 # A fit takes a quarter of a second, and a case reads its fluid for the contact and for what it says of it.
@@ -143,15 +152,6 @@ def _flow_curve(path: Path, changed: int, law: str | None) -> FlowCurve:
 @functools.lru_cache(maxsize=16)
 def _curve_of_file(path: Path, changed: int) -> PronyFit:
     return from_master_curve(path)
-
-
-def _master_curve(file: Any, folder: Path | None) -> PronyFit:
-    if folder is None:
-        raise InputError(f"master_curve = {show(file)} stands in [solid] of a case; give relaxation_times and moduli here.")
-    if not isinstance(file, str):
-        raise InputError(f"master_curve = {show(file)} must be text in quotes, the name of a file.")
-    path = folder / file
-    return _curve_of_file(path, path.stat().st_mtime_ns if path.is_file() else 0)
 
 
 def preset_facts(tables: dict[str, Any]) -> dict[str, float]:
@@ -191,7 +191,7 @@ def body_source_text(tables: dict[str, Any], folder: Path) -> tuple[str, ...]:
     table = tables.get("solid")
     if not isinstance(table, dict) or "master_curve" not in table:
         return ()
-    found = _master_curve(table["master_curve"], folder)
+    found = _master_curve(table, folder)
     relaxed = format_si(found.modulus, "pressure", 4)
     what = "the relaxed modulus of the series is" if gives_modulus(tables.get("contact")) else "modulus ="
     text = f"{what} {relaxed} with Poisson's ratio {found.poisson_ratio:g}, from master_curve = {show(table['master_curve'])}"
@@ -204,7 +204,7 @@ def _solid(table: dict[str, Any], contact: Any, folder: Path | None) -> dict[str
         doubled = next((key for key in ("relaxation_times", "moduli") if key in table), None)
         if doubled:
             raise InputError(f"master_curve and {doubled} are two descriptions of the same; give one of them.")
-        curve = _master_curve(table["master_curve"], folder)
+        curve = _master_curve(table, folder)
         if isinstance(contact, dict) and not gives_modulus(contact):
             contact["modulus"] = curve.modulus
         table = {key: value for key, value in table.items() if key != "master_curve"}

@@ -7,8 +7,6 @@ from collections.abc import Collection, Mapping
 from stribeck.contacts.contact import Contact
 from stribeck.quantities.formats import format_percent
 
-__all__ = ["follows_surface", "typical_error_text", "typical_errors"]
-
 
 def follows_surface(contact: Contact, errors: Collection[str]) -> bool:
     """Return whether beta moves with an uncertain roughness, as under Persson's law."""

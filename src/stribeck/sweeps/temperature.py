@@ -14,8 +14,6 @@ from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError
 
-__all__ = ["NAME", "TEMPERATURE", "check_temperature_axis", "viscosity_at"]
-
 NAME = "temperature"
 
 
