@@ -32,7 +32,8 @@ class Motion(Protocol):
         """Return the path of the moving surface, whose derivative the speed is [m]."""
 
     def times(self, steps: int) -> Array:
-        """Return ``steps`` + 1 instants from zero to the duration, dense where the speed turns [s]."""
+        """Return ``steps`` + 1 instants from zero to the duration, dense where the speed is small [s]."""
+        return dense_where_slow(self, steps)
 
 
 def dense_where_slow(motion: Motion, steps: int, corners: Sequence[float] = ()) -> Array:

@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.motions.motion import Motion, dense_where_slow
+from stribeck.motions.motion import Motion
 from stribeck.quantities.schema import Input, law
 
 __all__ = ["Ramp"]
@@ -40,7 +40,3 @@ class Ramp(Motion):
     def position(self, time: Array) -> Array:
         """Return the path since the start [m]."""
         return np.asarray(self.start * time + 0.5 * (self.end - self.start) * time**2 / self.duration)
-
-    def times(self, steps: int) -> Array:
-        """Return instants that are denser where the speed is small [s]."""
-        return dense_where_slow(self, steps)

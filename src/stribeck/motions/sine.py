@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.motions.motion import Motion, dense_where_slow
+from stribeck.motions.motion import Motion
 from stribeck.quantities.schema import Input, law
 
 __all__ = ["Sine"]
@@ -43,7 +43,3 @@ class Sine(Motion):
     def position(self, time: Array) -> Array:
         """Return the position from the middle of the stroke [m]."""
         return np.asarray(0.5 * self.stroke * np.sin(2 * math.pi * self.frequency * time))
-
-    def times(self, steps: int) -> Array:
-        """Return instants that are denser at the reversals [s]."""
-        return dense_where_slow(self, steps)
