@@ -66,7 +66,8 @@ TABLE = sb.contact_laws.TableLaw(SEPARATIONS, np.exp(-SEPARATIONS) + 0.3 * np.ex
 
 
 def test_sensitivities_are_differences_of_solved_friction(subtests):
-    moving, loose, tight = {"speed": "10 mm/s"}, ({"rtol": 1e-7}, {}, 2e-4), ({"rtol": 1e-9}, {"step": 1e-4, "rtol": 1e-9}, 2e-5)
+    moving = {"speed": "10 mm/s"}
+    loose, tight = ({"rtol": 1e-7}, {}, 2e-4), ({"rtol": 1e-9}, {"step": 1e-4, "rtol": 1e-9}, 2e-5)
     for parts, names, (asked, of_differences, error) in [
         (moving | {"flow_factors": "effective-medium"}, ("roughness", "alpha"), loose),
         (moving | {"slide_to_roll": -1.0}, ("boundary_friction", "load"), loose),
