@@ -127,8 +127,9 @@ def _curve(table: str, name: str, entry: Any, inputs: InputTable) -> tuple[str, 
     """Return the inputs of a curve, and its own fluid, solid and so on as the tables of its name have them."""
     if not isinstance(entry, dict):
         raise InputError(f"{name} = {show(entry)} must be a table of inputs, [fit.curves.{name}].")
-    rest, parts, problems = take_parts({**entry, "contact": {}})
-    found: dict[str, Any] = {**rest.pop("contact"), **parts}
+    model = take_parts({**entry, "contact": {}})
+    rest, problems = model.rest, model.problems
+    found: dict[str, Any] = {**rest.pop("contact"), **model.parts}
     rows = numbers_of(Parts) | inputs.rows
     known = (*(each for each in inputs.names if each != "speed"), *PART_INPUTS, "slide_to_roll")
     for key, value in rest.items():

@@ -5,10 +5,10 @@ Each becomes one or two arguments of the contact; what a number may be is checke
 
 from __future__ import annotations
 
-import functools
 import itertools
 import json
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,13 +16,12 @@ from stribeck.cases.tables import AS_GIVEN, noted, one_of, read_tables
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.parts import KINDS, LAW_NUMBERS, Kind
 from stribeck.fluids.description import Fluid
-from stribeck.fluids.liquids import Liquid
-from stribeck.fluids.measured_viscosity import FlowCurve, read_flow_curve
+from stribeck.fluids.measured_viscosity import read_flow_curve
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.schema import arguments_of, made_of, needed_of, numbers_of
 from stribeck.quantities.units import InputError, show
-from stribeck.solids.prony_fit import PronyFit, from_master_curve
+from stribeck.solids.prony_fit import from_master_curve
 
 # Argument of the fluid -> the laws that a key of ``[fluid]`` names.
 FLUID_KINDS = {name: KINDS[name] for name in ("rheology", "viscosity", "density")}
@@ -39,12 +38,24 @@ def _keys(*kinds: Kind) -> tuple[str, ...]:
     return tuple(dict.fromkeys((*(kind.key for kind in kinds), *numbers)))
 
 
+@dataclass
+class ReadParts:
+    """What the tables of the model say."""
+
+    contact: Any  # The table of the contact, which takes a viscosity or modulus that they bring along
+    folder: Path | None  # Of files; None where these are not known
+    rest: dict[str, Any]  # The other tables
+    parts: dict[str, Any] = field(default_factory=dict)  # Arguments of a contact
+    facts: dict[str, float] = field(default_factory=dict)  # Facts for checks, in SI units
+    sentences: list[str] = field(default_factory=list)  # Where a viscosity or a modulus is from
+    problems: list[str] = field(default_factory=list)
+
+
 class PartTable(NamedTuple):
     """A table of a case that describes a part of a contact."""
 
     keys: tuple[str, ...]
-    # Arguments of a contact from the table, that of the contact, and the folder of files; None where files are not known
-    read: Callable[[dict[str, Any], Any, Path | None], dict[str, Any]]
+    read: Callable[[dict[str, Any], ReadParts], dict[str, Any]]  # Arguments of a contact from the table
     missing: str = ""  # What to say where the first of its keys is missing; empty if none is needed
 
 
@@ -59,14 +70,13 @@ def in_file(problem: str, table: str) -> str:
     return f"[{next(own, table)}] {problem}"
 
 
-def take_parts(tables: dict[str, Any], folder: Path | None = None) -> tuple[dict[str, Any], dict[str, Any], list[str]]:
-    """Return the tables without those of the model, what these say, and what is wrong with them; files are in a folder."""
+def take_parts(tables: dict[str, Any], folder: Path | None = None) -> ReadParts:
+    """Return what the tables of the model say, the other tables, and what is wrong."""
     rest = {name: value for name, value in tables.items() if name not in PART_TABLES}
     if isinstance(rest.get("contact"), dict):
         rest["contact"] = dict(rest["contact"])
     elsewhere = {"contact": dict.fromkeys((*INPUT_TABLES["point"].quantities, "geometry"), AS_GIVEN)}
-    parts: dict[str, Any] = {}
-    problems: list[str] = []
+    found = ReadParts(rest.get("contact"), folder, rest)
     for name, part in PART_TABLES.items():
         wrong: list[str] = []
         given = {name: tables[name]} if name in tables else {}
@@ -75,9 +85,9 @@ def take_parts(tables: dict[str, Any], folder: Path | None = None) -> tuple[dict
             with noted(wrong, name):
                 if part.missing and part.keys[0] not in read[name]:
                     raise InputError(f"{part.keys[0]} is missing; {part.missing}.")
-                parts |= part.read(read[name], rest.get("contact"), folder)
-        problems += wrong
-    return rest, parts, problems
+                found.parts |= part.read(read[name], found)
+        found.problems += wrong
+    return found
 
 
 def _refuse_other_keys(table: dict[str, Any], keys: tuple[str, ...], of: str) -> None:
@@ -87,10 +97,10 @@ def _refuse_other_keys(table: dict[str, Any], keys: tuple[str, ...], of: str) ->
             raise InputError(f"{key} = {show(table[key])} is given, but {of} has no such key; remove it.")
 
 
-def _fluid(table: dict[str, Any], contact: Any, folder: Path | None) -> dict[str, Any]:
+def _fluid(table: dict[str, Any], found: ReadParts) -> dict[str, Any]:
     source = next((key for key in SOURCES_OF_VISCOSITY if key in table), None)
     if source is not None:
-        return _with_viscosity(table, contact, source, folder)
+        return _with_viscosity(table, source, found)
     _refuse_other_keys(table, _keys(*FLUID_KINDS.values()), "a fluid without preset")
     given = {"viscosity_law": "barus"} | table if "pressure_coefficient" in table else table
     return {"fluid": Fluid(**{name: _law(given, kind) for name, kind in FLUID_KINDS.items()})}
@@ -103,81 +113,45 @@ def _law(table: dict[str, Any], kind: Kind) -> Any:
     return made_of(kind.laws[name], f"{kind.key} = {name!r}", given)
 
 
-def _with_viscosity(table: dict[str, Any], contact: Any, source: str, folder: Path | None) -> dict[str, Any]:
+def _with_viscosity(table: dict[str, Any], source: str, found: ReadParts) -> dict[str, Any]:
     """Return a fluid that has a viscosity, which becomes that of the contact."""
-    doubled = isinstance(contact, dict) and "viscosity" in contact
-    if isinstance(contact, dict) and not doubled:
+    contact = found.contact if isinstance(found.contact, dict) else {}
+    doubled = "viscosity" in contact
+    if not doubled:
         contact["viscosity"] = 1.0  # stands for that of the liquid, so that a wrong condition is no lack of a viscosity
     if source == "preset":
         one_of(*PRESETS)("preset", table["preset"])
     _refuse_other_keys(table, (source, *SOURCES_OF_VISCOSITY[source]), f"a {source.replace('_', ' ')}")
-    liquid = _liquid(table, folder)
+    liquid: Any
+    if source == "preset":
+        preset = PRESETS[table[source]]
+        given = {key: table[key] for key in CONDITIONS if key in table}
+        liquid = preset(**given)
+        conditions = {source: table[source], **preset.conditions, **given}
+        words = " and ".join(f"{name} = {show(value)}" for name, value in conditions.items())
+        said = f"{words}: {preset.source} ({preset.range})."
+        found.facts |= {} if liquid.thinning_rate is None else {"thinning_rate": liquid.thinning_rate}
+    else:
+        place = "[fluid] of a case; give the viscosity and the law here"
+        liquid = read_flow_curve(_file_of(source, table, found.folder, place), law=table.get("model"))
+        said = f"flow_curve = {show(table[source])}: {' '.join([liquid.headline, *liquid.notes])}"
     if doubled:
         raise InputError(
             f"{source} = {show(table[source])} and viscosity = {show(contact['viscosity'])} in [contact] are both given; "
             "remove one of them."
         )
-    if isinstance(contact, dict):
-        contact["viscosity"] = liquid.viscosity
+    contact["viscosity"] = liquid.viscosity
+    found.sentences.append(f"viscosity = {format_si(liquid.viscosity, 'viscosity', 4)} from {said}")
     return {"fluid": liquid.fluid}
 
 
-def _liquid(table: dict[str, Any], folder: Path | None) -> Liquid | FlowCurve:
-    if "preset" in table:
-        return PRESETS[table["preset"]](**{key: table[key] for key in CONDITIONS if key in table})
-    path, changed = _file_of("flow_curve", table, folder, "[fluid] of a case; give the viscosity and the law here")
-    return _flow_curve(path, changed, table.get("model"))
-
-
-def _master_curve(table: dict[str, Any], folder: Path | None) -> PronyFit:
-    return _curve_of_file(*_file_of("master_curve", table, folder, "[solid] of a case; give relaxation_times and moduli here"))
-
-
-def _file_of(key: str, table: dict[str, Any], folder: Path | None, place: str) -> tuple[Path, int]:
-    """Return the path of the file that a key names, and when it changed."""
+def _file_of(key: str, table: dict[str, Any], folder: Path | None, place: str) -> Path:
+    """Return the path of the file that a key names."""
     if folder is None:
         raise InputError(f"{key} = {show(table[key])} stands in {place}.")
     if not isinstance(table[key], str):
         raise InputError(f"{key} = {show(table[key])} must be text in quotes, the name of a file.")
-    path = folder / table[key]
-    return path, path.stat().st_mtime_ns if path.is_file() else 0
-
-
-# A fit takes a quarter of a second, and a case reads its fluid for the contact and for what it says of it.
-@functools.lru_cache(maxsize=16)
-def _flow_curve(path: Path, changed: int, law: str | None) -> FlowCurve:
-    return read_flow_curve(path, law=law)
-
-
-@functools.lru_cache(maxsize=16)
-def _curve_of_file(path: Path, changed: int) -> PronyFit:
-    return from_master_curve(path)
-
-
-def preset_facts(tables: dict[str, Any]) -> dict[str, float]:
-    """Return the facts for checks that a preset holds, in SI units."""
-    table = tables.get("fluid")
-    rate = getattr(_liquid(table, None), "thinning_rate", None) if isinstance(table, dict) and "preset" in table else None
-    return {} if rate is None else {"thinning_rate": rate}
-
-
-def viscosity_source_text(tables: dict[str, Any], viscosity: float, folder: Path) -> tuple[str, ...]:
-    """Return where the viscosity of a fluid is from, in a sentence; nothing where the case gives it."""
-    table = tables.get("fluid")
-    if not isinstance(table, dict):
-        return ()
-    source = next((key for key in SOURCES_OF_VISCOSITY if key in table), None)
-    if source is None:
-        return ()
-    text = f"viscosity = {format_si(viscosity, 'viscosity', 4)} from "
-    if source == "flow_curve":
-        found = _liquid(table, folder)
-        assert isinstance(found, FlowCurve)
-        return (f"{text}flow_curve = {show(table[source])}: {' '.join([found.headline, *found.notes])}",)
-    preset = PRESETS[table[source]]
-    conditions = {**preset.conditions, **{key: table[key] for key in CONDITIONS if key in table}}
-    given = " and ".join(f"{name} = {show(value)}" for name, value in {source: table[source], **conditions}.items())
-    return (f"{text}{given}: {preset.source} ({preset.range}).",)
+    return folder / str(table[key])
 
 
 def gives_modulus(contact: Any) -> bool:
@@ -186,29 +160,10 @@ def gives_modulus(contact: Any) -> bool:
     return isinstance(contact, dict) and any(stands_for.get(key, key) == "modulus" for key in contact)
 
 
-def body_source_text(tables: dict[str, Any], folder: Path) -> tuple[str, ...]:
-    """Return where the relaxation of a body is from, in a sentence; nothing where the case gives it."""
-    table = tables.get("solid")
-    if not isinstance(table, dict) or "master_curve" not in table:
-        return ()
-    found = _master_curve(table, folder)
-    relaxed = format_si(found.modulus, "pressure", 4)
-    what = "the relaxed modulus of the series is" if gives_modulus(tables.get("contact")) else "modulus ="
-    text = f"{what} {relaxed} with Poisson's ratio {found.poisson_ratio:g}, from master_curve = {show(table['master_curve'])}"
-    return (f"{text}: {' '.join([found.headline, *found.notes])}",)
-
-
-def _solid(table: dict[str, Any], contact: Any, folder: Path | None) -> dict[str, Any]:
+def _solid(table: dict[str, Any], found: ReadParts) -> dict[str, Any]:
     """Return the body of a table: a layer, a memory, or a layer that has one; its numbers say which."""
     if "master_curve" in table:
-        doubled = next((key for key in ("relaxation_times", "moduli") if key in table), None)
-        if doubled:
-            raise InputError(f"master_curve and {doubled} are two descriptions of the same; give one of them.")
-        curve = _master_curve(table, folder)
-        if isinstance(contact, dict) and not gives_modulus(contact):
-            contact["modulus"] = curve.modulus
-        table = {key: value for key, value in table.items() if key != "master_curve"}
-        table |= {"relaxation_times": list(curve.solid.relaxation_times), "moduli": list(curve.solid.moduli)}
+        table = _with_relaxation(table, found)
     kind = KINDS["solid"]
     laws = {name: law for name, law in kind.laws.items() if law is not None}
     named = one_of(*kind.laws)("model", table.get("model", next(iter(laws))))
@@ -238,37 +193,53 @@ def _solid(table: dict[str, Any], contact: Any, folder: Path | None) -> dict[str
     return {"solid": base["base"]}
 
 
-def _profile(table: dict[str, Any], contact: Any, folder: Path | None) -> dict[str, Any]:
+def _with_relaxation(table: dict[str, Any], found: ReadParts) -> dict[str, Any]:
+    """Return the table with the relaxation of a measured curve, whose modulus becomes that of a contact without one."""
+    doubled = next((key for key in ("relaxation_times", "moduli") if key in table), None)
+    if doubled:
+        raise InputError(f"master_curve and {doubled} are two descriptions of the same; give one of them.")
+    place = "[solid] of a case; give relaxation_times and moduli here"
+    curve = from_master_curve(_file_of("master_curve", table, found.folder, place))
+    what = "the relaxed modulus of the series is" if gives_modulus(found.contact) else "modulus ="
+    found.sentences.append(
+        f"{what} {format_si(curve.modulus, 'pressure', 4)} with Poisson's ratio {curve.poisson_ratio:g}, from master_curve = "
+        f"{show(table['master_curve'])}: {' '.join([curve.headline, *curve.notes])}"
+    )
+    if isinstance(found.contact, dict) and not gives_modulus(found.contact):
+        found.contact["modulus"] = curve.modulus
+    series = {"relaxation_times": list(curve.solid.relaxation_times), "moduli": list(curve.solid.moduli)}
+    return {key: value for key, value in table.items() if key != "master_curve"} | series
+
+
+def _profile(table: dict[str, Any], found: ReadParts) -> dict[str, Any]:
     """Return the shape of a table."""
     kind = KINDS["profile"]
     name = one_of(*kind.laws)("shape", table["shape"])
     given = {key: value for key, value in table.items() if key != "shape"}
-    if folder is not None and isinstance(given.get("x"), str):  # the name of a file
-        given["x"] = str(folder / given["x"])
+    if found.folder is not None and isinstance(given.get("x"), str):  # the name of a file
+        given["x"] = str(found.folder / given["x"])
     return {"profile": made_of(kind.laws[name], f"shape = {name!r}", given)}
+
+
+def _one_law(name: str, read: Callable[..., dict[str, Any]] | None = None) -> PartTable:
+    """Return the table of a part that is one law."""
+    kind = KINDS[name]
+    return PartTable(
+        _keys(kind),
+        read or (lambda table, found: {name: _law(table, kind)}),
+        f"add {kind.key} = {' or '.join(map(json.dumps, kind.laws))}",
+    )
 
 
 PART_TABLES = {
     "fluid": PartTable((*_keys(*FLUID_KINDS.values()), *SOURCES_OF_VISCOSITY, *CONDITIONS), _fluid),
     "cavitation": PartTable(
         ("model", "cavity_pressure"),
-        lambda table, contact, folder: {"cavitation" if key == "model" else key: value for key, value in table.items()},
+        lambda table, found: {"cavitation" if key == "model" else key: value for key, value in table.items()},
         'add model = "exit", "reform" or "none"',
     ),
-    "flow_factors": PartTable(
-        _keys(KINDS["flow_factors"]),
-        lambda table, contact, folder: {"flow_factors": _law(table, KINDS["flow_factors"])},
-        f"add model = {' or '.join(map(json.dumps, KINDS['flow_factors'].laws))}",
-    ),
+    "flow_factors": _one_law("flow_factors"),
     "solid": PartTable((*_keys(KINDS["solid"]), "master_curve"), _solid),
-    "profile": PartTable(
-        _keys(KINDS["profile"]),
-        _profile,
-        f"add shape = {' or '.join(map(json.dumps, KINDS['profile'].laws))}",
-    ),
-    "asperity_friction": PartTable(
-        _keys(KINDS["asperity_friction"]),
-        lambda table, contact, folder: {"asperity_friction": _law(table, KINDS["asperity_friction"])},
-        f"add model = {' or '.join(map(json.dumps, KINDS['asperity_friction'].laws))}",
-    ),
+    "profile": _one_law("profile", _profile),
+    "asperity_friction": _one_law("asperity_friction"),
 }

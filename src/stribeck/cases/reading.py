@@ -14,7 +14,7 @@ from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL, Axis, Case, CurveSettin
 from stribeck.cases.facts import FACTS, fact_values
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.cases.law import ERRORS_OF_SURFACES, INPUTS_OF_SURFACES, KEYS_OF_SURFACES, LAW_KEY, SURFACE, law_of_file
-from stribeck.cases.model_parts import body_source_text, in_file, preset_facts, take_parts, viscosity_source_text
+from stribeck.cases.model_parts import in_file, take_parts
 from stribeck.cases.stroke_settings import KEYS as KEYS_OF_STROKE
 from stribeck.cases.stroke_settings import StrokeSettings, stroke_settings
 from stribeck.cases.tables import AS_GIVEN, HEAD, Key, Keys, noted, one_of, read_tables, tolerance, whole
@@ -83,9 +83,10 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         geometry, table = geometry_of(tables)
     inputs = INPUT_TABLES[geometry]
     errors = _split_errors(table, problems)
-    table, parts, wrong = take_parts(table, path.parent)
+    model = take_parts(table, path.parent)
+    table, parts = model.rest, model.parts
     elsewhere = tuple(own for part, own in IN_PLACE_OF.items() if parts.get(part, tables.get(part)) is not None)
-    problems += wrong
+    problems += model.problems
     fit = bench = FitSettings(geometry=geometry)
     with noted(problems):
         fit = check_fit_table(table.pop("fit", {}), geometry, tables.get("fluid"))
@@ -133,12 +134,11 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         notes=checked["notes"],
         fit=replace(fit, **of_contact),
         bench=replace(bench, **of_contact),
-        facts={**preset_facts(tables), **{name: found.given[name] for name in FACTS.keys() & found.given.keys()}, **facts},
+        facts={**model.facts, **{name: found.given[name] for name in FACTS.keys() & found.given.keys()}, **facts},
         errors=known | typical,
         conversions=(
             *found.sentences,
-            *viscosity_source_text(tables, contact.viscosity, path.parent),
-            *body_source_text(tables, path.parent),
+            *model.sentences,
             *typical_error_text(contact, typical),
         ),
         tables=tables,

@@ -19,7 +19,7 @@ from typing import Any, Literal, Self
 
 from stribeck.cases.case import Case
 from stribeck.cases.law import INPUTS_OF_SURFACES, SOURCES, self_contained
-from stribeck.cases.model_parts import FLUID_KINDS, SOURCES_OF_VISCOSITY, gives_modulus, preset_facts
+from stribeck.cases.model_parts import FLUID_KINDS, SOURCES_OF_VISCOSITY, gives_modulus, take_parts
 from stribeck.cases.reading import check_case
 from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contacts.contact import Contact
@@ -216,7 +216,7 @@ def from_case(case: Case) -> Inputs:
         tables["surface"] = rough | tables["surface"] | {"shape_only": True}
     if not SOURCES_OF_VISCOSITY.keys().isdisjoint(tables.get("fluid", {})):
         tables["fluid"] = fluid_table(case.contact.fluid)
-        tables["check"] = {**preset_facts(case.tables), **tables.get("check", {})}
+        tables["check"] = {**take_parts(case.tables).facts, **tables.get("check", {})}
         own.append("viscosity")
     if "master_curve" in tables.get("solid", {}):
         series = {name: list(getattr(case.contact.solid, name)) for name in ("relaxation_times", "moduli")}
