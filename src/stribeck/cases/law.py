@@ -15,7 +15,7 @@ from stribeck.cases.tables import AS_GIVEN, NUMBERS, TRUTH, Key, Keys, one_of
 from stribeck.contact_laws.exponential import SpectralExponential
 from stribeck.contact_laws.greenwood import SUMMITS
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contact_laws.persson import GAMMA, GAMMA_INPUT, PerssonLaw, persson_law
+from stribeck.contact_laws.persson import GAMMA, GAMMA_INPUT, persson_law
 from stribeck.contact_laws.scaled import NAMED_LAWS, named_law
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
 from stribeck.contact_laws.table import TableLaw
@@ -117,22 +117,15 @@ def _of_surface(law: Law, entries: dict[str, Any], contact: dict[str, Any], fold
             source = "the file of the spectrum" if "spectrum" in entries else "the spectrum"
             raise InputError(f"{extra[0]} = {show(entries[extra[0]])} follows from {source}; remove one of them.")
         wavenumber, density = _of_spectrum(entries, folder)
-        full = _law_of_spectrum(tuple(wavenumber.tolist()), tuple(density.tolist()), entries.get("gamma", GAMMA))
+        full = _law_of(Spectrum(wavenumber, density), entries.get("gamma", GAMMA))
     else:
         gamma = GAMMA_INPUT.checked(entries.pop("gamma", GAMMA))
-        full = _law_of_roughness(SelfAffine(**read_inputs(entries, SURFACE).checked()), gamma)
+        full = _law_of(SelfAffine(**read_inputs(entries, SURFACE).checked()), gamma)
     return (full if law == "persson" else SpectralExponential(full.area_slope), full.coefficients)
 
 
 # A law takes half a second, and a page reads its case at each move of a slider.
-@functools.lru_cache(maxsize=16)
-def _law_of_spectrum(wavenumber: tuple[float, ...], density: tuple[float, ...], gamma: float) -> PerssonLaw:
-    return persson_law(Spectrum(np.array(wavenumber), np.array(density)), gamma)
-
-
-@functools.lru_cache(maxsize=16)
-def _law_of_roughness(surface: SelfAffine, gamma: float) -> PerssonLaw:
-    return persson_law(surface, gamma)
+_law_of = functools.lru_cache(maxsize=16)(persson_law)
 
 
 def _of_spectrum(entries: dict[str, Any], folder: Path) -> tuple[Array, Array]:

@@ -8,10 +8,10 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 import stribeck as sb
-from stribeck.cli.arguments import Quantity, Verbose
+from stribeck.cli.arguments import Quantity, Verbose, check_outputs
 from stribeck.cli.exits import answer
 from stribeck.cli.progress import interruptible
-from stribeck.files.writing import check_writable, need_extra
+from stribeck.files.writing import check_writable
 
 SHORT_NOTES = 8  # Notes that are printed without -v, so that the answer fits a screen
 
@@ -51,11 +51,7 @@ def bench_command(
         from stribeck.files.datasets import CSV_ENDINGS
 
         check_writable(out, CSV_ENDINGS, force=force)
-    if plot is not None:
-        from stribeck.plot.style import PICTURE_ENDINGS
-
-        check_writable(plot, PICTURE_ENDINGS, force=force)
-        need_extra("a picture", "plot", "matplotlib")
+    check_outputs(force, plot)
     with interruptible() as progress:
         found = sb.bench.read(
             runs,

@@ -8,8 +8,9 @@ import os
 import re
 import signal
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any, TextIO
@@ -40,7 +41,25 @@ def complain(text: str, code: int) -> int:
     return code
 
 
-def write_each(actions: Mapping[Path | None, Callable[[], object]]) -> tuple[list[str], list[str]]:
+Writers = dict[Path | None, Callable[[], object]]  # What writes each file; None where none is asked for
+
+
+def writers(
+    found: Any, force: bool, title: str = "", plot: Path | None = None, data: Sequence[Path] = (), **drawing: Any
+) -> Writers:
+    """Return what writes the data and the picture of a result."""
+    actions: Writers = {}
+    if data:
+        from stribeck.files.datasets import write_data
+
+        dataset = found.to_dataset()
+        dataset.attrs |= {"title": title} if title else {}
+        actions |= {path: partial(write_data, dataset, path, force=force) for path in data}
+    titled = {"title": title} if title else {}
+    return actions | {plot: partial(found.plot, plot, force=force, **titled, **drawing)}
+
+
+def write_each(actions: Writers) -> tuple[list[str], list[str]]:
     """Write files; return the names of those that were written, and a sentence about each that was not; none of None."""
     written, problems = [], []
     for path, action in actions.items():
@@ -140,6 +159,19 @@ def _plain(content: Any) -> Any:
     if isinstance(content, float) and not math.isfinite(content):
         return None
     return content
+
+
+def finish(
+    as_json: bool,
+    content: Callable[[], dict[str, Any]],
+    lines: Callable[[], Iterable[str]],
+    files: Writers,
+    checks: Checks | None = None,
+) -> int:
+    """Write files, print what a command found, and return the exit code of what could not be written."""
+    written, problems = write_each(files)
+    answer(as_json, lambda: content() | {"files": written}, lines, checks, None, written)
+    return complain("\n".join(problems), EXIT_BAD_INPUT) if problems else 0
 
 
 class Interrupted:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -10,7 +9,7 @@ from typing import Any
 import stribeck as sb
 from stribeck.cli.arguments import Names, Quantities, Whole, check_outputs
 from stribeck.cli.data_files import ENDING, read_arguments
-from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, answer, complain, write_each
+from stribeck.cli.exits import EXIT_FAILED, complain, finish, writers
 from stribeck.cli.progress import interruptible
 from stribeck.quantities.units import InputError
 
@@ -55,24 +54,16 @@ def fit_command(
         drawn = None
         if posterior is not None:
             drawn = draw_posterior(found, steps=posterior, on_step=lambda n, m: progress(n, m, "posterior"))
-    actions: dict[Path | None, Callable[[], object]] = {
-        plot: partial(found.plot, plot, force=force, title=loaded.title, notes=not no_notes)
-    }
+    written = writers(found, force, loaded.title, plot, notes=not no_notes)
     if out is not None and found.converged:
-        actions[out] = partial(write_fitted_case, found, loaded, out, force=force)
-    written, problems = write_each(actions)
+        written[out] = partial(write_fitted_case, found, loaded, out, force=force)
 
     def content() -> dict[str, Any]:
-        posterior = {} if drawn is None else {"posterior": drawn.to_dict()}
-        return {"title": loaded.title} | found.to_dict() | posterior | {"files": written}
+        return {"title": loaded.title} | found.to_dict() | ({} if drawn is None else {"posterior": drawn.to_dict()})
 
     said = filter(None, [found.checks.first_line, loaded.title, str(found), str(drawn or "")])
-    answer(json, content, lambda: said, found.checks, None, written)
-    if problems:
-        return complain("\n".join(problems), EXIT_BAD_INPUT)
-    if not found.converged:
-        return complain(found.outcome.value, EXIT_FAILED)
-    return 0
+    code = finish(json, content, lambda: said, written, found.checks)
+    return code if code or found.converged else complain(found.outcome.value, EXIT_FAILED)
 
 
 def loop_command(
@@ -96,15 +87,11 @@ def loop_command(
     check_outputs(force, plot)
     with interruptible() as progress:
         found = sb.bench.fit_loop(data[0], loaded, free=free, on_step=lambda n: progress(n, max(n, STROKES), "stroke"))
-    actions: dict[Path | None, Callable[[], object]] = {
-        plot: partial(found.plot, plot, force=force, title=loaded.title, notes=not no_notes)
-    }
-    written, problems = write_each(actions)
-    said = filter(None, [str(found).partition("\n")[0], loaded.title, str(found).partition("\n")[2]])
-    answer(json, lambda: {"title": loaded.title} | found.to_dict() | {"files": written}, lambda: said, None, None, written)
-    if problems:
-        return complain("\n".join(problems), EXIT_BAD_INPUT)
-    return 0 if found.outcome.ok else complain(found.outcome.value, EXIT_FAILED)
+    headline, _, rest = str(found).partition("\n")
+    said = filter(None, [headline, loaded.title, rest])
+    written = writers(found, force, loaded.title, plot, notes=not no_notes)
+    code = finish(json, lambda: {"title": loaded.title} | found.to_dict(), lambda: said, written)
+    return code if code or found.outcome.ok else complain(found.outcome.value, EXIT_FAILED)
 
 
 def next_command(
@@ -135,12 +122,8 @@ def next_command(
             viscosities=viscosities,
             on_step=lambda n, m: progress(n, m, "states"),
         )
-    if plot is not None:
-        plan.plot(plot, force=force, title=loaded.title)
-    written = {"files": [str(plot)] if plot is not None else []}
     said = filter(None, [found.checks.first_line, str(plan)])
-    answer(json, lambda: plan.to_dict() | written, lambda: said, found.checks, None, [plot])
-    return 0
+    return finish(json, plan.to_dict, lambda: said, writers(plan, force, loaded.title, plot), found.checks)
 
 
 def master_command(
@@ -155,11 +138,8 @@ def master_command(
     data, loaded = read_arguments("master", files)
     check_outputs(force, plot)
     found = sb.master_curve(data, loaded)
-    if plot is not None:
-        found.plot(plot, force=force, title=loaded.title, notes=not no_notes)
-    written = [str(plot)] if plot is not None else []
-    answer(json, lambda: found.to_dict() | {"files": written}, lambda: [loaded.title, str(found)], None, None, written)
-    return 0
+    written = writers(found, force, loaded.title, plot, notes=not no_notes)
+    return finish(json, found.to_dict, lambda: [loaded.title, str(found)], written)
 
 
 def compare_command(
@@ -189,16 +169,15 @@ def compare_command(
     check_outputs(force, plot, as_case, data=[out] if out is not None and as_case is None else [])
     with interruptible() as progress:
         found = sb.compare(data, loaded, models=models, free=free, on_step=progress.of_fit)
-    actions: dict[Path | None, Callable[[], object]] = {
-        plot: partial(found.plot, plot, force=force, title=loaded.title, notes=not no_notes)
-    }
+    written = writers(found, force, loaded.title, plot, notes=not no_notes)
     stored: list[str] = []
     if as_case is not None:
-        actions[as_case] = lambda: stored.append(write_preferred_case(found, loaded, as_case, force=force))
+        written[as_case] = lambda: stored.append(write_preferred_case(found, loaded, as_case, force=force))
     elif out is not None:
-        actions[out] = lambda: write_data(found.to_dataset(), out, force=force)
-    written, problems = write_each(actions)
-    of_case = [f"{out} is the case of {name}." for name in stored]
-    said = filter(None, [found.candidates[0].fit.checks.first_line, str(found), *of_case])
-    answer(json, lambda: found.to_dict() | {"files": written}, lambda: said, None, None, written)
-    return complain("\n".join(problems), EXIT_BAD_INPUT) if problems else 0
+        written[out] = lambda: write_data(found.to_dataset(), out, force=force)
+
+    def lines() -> list[str]:
+        of_case = [f"{out} is the case of {name}." for name in stored]
+        return [*filter(None, [found.candidates[0].fit.checks.first_line, str(found)]), *of_case]
+
+    return finish(json, found.to_dict, lines, written)

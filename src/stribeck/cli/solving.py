@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import suppress
-from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -29,7 +27,7 @@ from stribeck.cli.arguments import (
     curve_arguments,
     read_case,
 )
-from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, EXIT_INTERRUPTED, answer, complain, show, write_each
+from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, EXIT_INTERRUPTED, answer, complain, show, write_each, writers
 from stribeck.cli.progress import interruptible
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS
@@ -129,15 +127,7 @@ def curve_command(
             verdict = verdict if progress.wanted else whole  # what solves a curve ends silently when it is stopped
         is_stopped = progress.wanted and loaded is not None
         progress.writes = True
-        actions: dict[Path | None, Callable[[], object]] = {}
-        if outputs:
-            from stribeck.files.datasets import write_data
-
-            dataset = curve.to_dataset()
-            dataset.attrs |= {"title": title} if title else {}
-            actions = {path: partial(write_data, dataset, path, force=force) for path in outputs}
-        actions[plot] = partial(curve.plot, plot, force=force, title=title, notes=not no_notes, **verdict.drawn)
-        written, problems = write_each(actions)
+        written, problems = write_each(writers(curve, force, title, plot, outputs, notes=not no_notes, **verdict.drawn))
     from stribeck.cli.reports import state_and_curve as report
 
     def content() -> dict[str, Any]:

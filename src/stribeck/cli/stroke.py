@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import partial
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,7 +10,7 @@ from cyclopts import Parameter
 
 import stribeck as sb
 from stribeck.cli.arguments import Verbose, check_outputs
-from stribeck.cli.exits import EXIT_BAD_INPUT, answer, complain, write_each
+from stribeck.cli.exits import EXIT_BAD_INPUT, answer, complain, write_each, writers
 from stribeck.cli.progress import interruptible
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError
@@ -65,16 +64,7 @@ def stroke_command(
 
         steady = beside_steady(found, lambda done, total: progress(done, total, "steady sliding, point"))
         progress.writes = True
-        actions: dict[Path | None, Callable[[], object]] = {}
-        if outputs:
-            from stribeck.files.datasets import write_data
-
-            dataset = found.to_dataset()
-            dataset.attrs |= {"title": loaded.title} if loaded.title else {}
-            actions = {path: partial(write_data, dataset, path, force=force) for path in outputs}
-        if plot is not None:
-            actions[plot] = partial(found.plot, plot, force=force, title=loaded.title, notes=not no_notes)
-        written, problems = write_each(actions)
+        written, problems = write_each(writers(found, force, loaded.title, plot, outputs, notes=not no_notes))
 
     def content() -> dict[str, Any]:
         return {"title": loaded.title} | found.to_dict() | vars(steady) | {"files": written}

@@ -11,7 +11,7 @@ from cyclopts import Parameter
 import stribeck as sb
 from stribeck.cli.arguments import Number, Whole, check_outputs
 from stribeck.cli.data_files import ENDING
-from stribeck.cli.exits import EXIT_FAILED, EXIT_INTERRUPTED, answer, complain, show
+from stribeck.cli.exits import EXIT_FAILED, EXIT_INTERRUPTED, answer, complain, finish, show, writers
 from stribeck.cli.progress import interruptible
 from stribeck.files.writing import atomic_write
 
@@ -113,13 +113,10 @@ def surface_command(
         scan = surfaces.read_topography(path, unit=unit, height_unit=height_unit, spacing=spacing, channel=channel)
         found.append(surfaces.analyse(scan, keep_spikes=keep_spikes, **arguments))
     surface = found[0] if len(found) == 1 else surfaces.combine(found)
-    if plot is not None:
-        surface.plot(plot, force=force, notes=not no_notes)
+    written = writers(surface, force, "", plot, notes=not no_notes)
     if out is not None:
-        surfaces.write_surface_table(surface, out, force=force)
-    written = [str(name) for name in (plot, out) if name is not None]
-    answer(json, lambda: surface.to_dict() | {"files": written}, lambda: [str(surface)], written=written)
-    return 0
+        written[out] = lambda: surfaces.write_surface_table(surface, out, force=force)
+    return finish(json, surface.to_dict, lambda: [str(surface)], written)
 
 
 def explore_command(
