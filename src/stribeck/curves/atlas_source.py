@@ -11,7 +11,6 @@ import numpy as np
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.atlas.tables import TableRow, table_for
-from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
@@ -144,31 +143,23 @@ class AtlasSource(Source):
         """Return the solution at a place, solved from cold."""
         return solve(self.coordinate.contact_at(s) or self.coordinate.groups_at(s), rtol=rtol)
 
-    def solution_at(self, s: float) -> Any:
-        """Return the solution at a place, or raise the error of its outcome."""
-        return self.solved(s, self.rtol)
-
-    @property
-    def _contact(self) -> Contact | None:
-        return self.coordinate.base if isinstance(self.coordinate.base, Contact) else None
-
     @cached_property
     def sliding(self) -> float:
         """Fraction of the sliding friction of asperities that acts, with its sign."""
         rule = RULES[self.table.geometry]
-        return float(rule.sliding_factor(self._groups(np.log([self.low])), rule.of_contact(self._contact)))
+        return float(rule.sliding_factor(self._groups(np.log([self.low])), rule.of_contact(self.coordinate.contact)))
 
     def inputs(self, groups: Groups, beta: float) -> dict[str, Any]:
         """Return the arguments of the friction other than the groups; a length in Hertz radii changes with the load."""
-        found: dict[str, Any] = {**RULES[self.table.geometry].of_contact(self._contact), "beta": beta}
+        found: dict[str, Any] = {**RULES[self.table.geometry].of_contact(self.coordinate.contact), "beta": beta}
         for name, power in self._moving.items():
-            assert self._contact is not None
-            found[name] = found[name] * (groups.load / self._contact.groups.load) ** power
+            assert self.coordinate.contact is not None
+            found[name] = found[name] * (groups.load / self.coordinate.contact.groups.load) ** power
         return found
 
     @property
     def _moving(self) -> dict[str, float]:
         """Exponents of the load in those of these arguments that change with it along the curve."""
-        if self._contact is None or self.coordinate.over != "load":
+        if self.coordinate.contact is None or self.coordinate.over != "load":
             return {}
         return {name: powers["load"] for name, powers in RULES[self.table.geometry].exponents.items()}

@@ -83,15 +83,6 @@ class BallSource(PathSource):
         contacts = map(self.coordinate.contact_at, s.tolist())
         return BallReadings(tuple(solution_of(state, contact) for state, contact in zip(states, contacts, strict=True)))
 
-    @cached_property
-    def sliding(self) -> float:
-        """Fraction of the sliding friction of asperities that acts, with its sign."""
-        rule, contact, groups = RULES["point"], self.coordinate.contact_at(0.0), self.coordinate.groups_at(0.0)
-        inputs = {**rule.of_contact(contact)}
-        if contact is None:
-            inputs["slide_to_roll"] = 2.0 * groups.model.film.slide
-        return float(rule.sliding_factor(groups, inputs))
-
     def parts(self, s: Array, coefficients: Coefficients) -> Parts:
         """Return the load share of the fluid and both parts of the friction."""
         found = self.read(s)
@@ -103,14 +94,10 @@ class BallSource(PathSource):
         ahead, behind = (sum(self.parts(s + step, coefficients)[1:]) for step in (SLOPE_LOG_STEP, -SLOPE_LOG_STEP))
         return np.asarray((ahead - behind) / (2 * SLOPE_LOG_STEP))
 
-    def solution_at(self, s: float) -> PointSolution:
-        """Return the solution at a place, or raise the error of its outcome."""
-        return self.solved(s)
-
-    def solved(self, s: float, rtol: float | None = None) -> PointSolution:
+    def solved(self, s: float, rtol: float) -> PointSolution:
         """Return the solution at a place, solved to a tolerance."""
         problem: BallKnots = self.path.problem
-        state = problem.solved_at(self.path, s, rtol)
+        state = problem.solved_at(self.path, s, max(rtol, RTOL_RANGE[0]))
         return finish_point(state, self.coordinate.contact_at(s))
 
 

@@ -22,7 +22,7 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solver.solve import as_groups
 
-__all__ = ["Coordinate", "Over", "check_inside", "check_points", "given_values", "read_problem"]
+__all__ = ["Coordinate", "Over", "check_inside", "check_points", "given_values", "plain_numbers", "read_problem"]
 
 Over = Literal["speed", "load", "roughness"]
 
@@ -72,11 +72,6 @@ class Coordinate:
     def geometry(self) -> Geometry:
         """A cylinder or a ball."""
         return self.groups_at(0.0).geometry if isinstance(self.base, Contact) else self.base.geometry
-
-    def is_uniform(self, values: Array) -> bool:
-        """Return whether the model is the same at all values: in Hertz units it may vary with the load."""
-        ends = [self.groups_at(math.log(value)).model for value in (values[0], values[-1])]
-        return ends[0] == ends[1]
 
     def inside(self, values: Array, ends: tuple[float, float]) -> Array:
         """Return those values that lie between two places, but for rounding."""
@@ -154,15 +149,7 @@ def _dimensions(name: str, value: Any) -> int:
 def _ends(over: Over, value: Any, table: InputTable | None) -> Array:
     """Return the ends or points of a range as ascending positive numbers."""
     items = [value] if isinstance(value, str) else list(value)
-    if table is not None:
-        row = table.quantities[over]
-        numbers = [to_si(item, row.dimension, over, row.typical) for item in items]
-    else:
-        try:
-            numbers = [float(item) for item in items]
-        except (TypeError, ValueError):
-            raise InputError(f"{over} = {show(value)}; a range of groups is made of plain numbers.") from None
-    found = np.asarray(numbers)
+    found = plain_numbers(over, value, items, table, "a range of groups is made of plain numbers.")
     if len(found) < 2 or not np.isfinite(found).all() or not (found > 0).all() or not (np.diff(found) > 0).all():
         raise InputError(
             f"{over} = {show(value)}; a range is two or more finite positive increasing numbers, such as (1e-9, 10)."
@@ -170,18 +157,22 @@ def _ends(over: Over, value: Any, table: InputTable | None) -> Array:
     return found
 
 
+def plain_numbers(name: str, value: Any, items: list[Any], table: InputTable | None, advice: str) -> Array:
+    """Return the items of an argument in SI units where a table has its quantity, else as the plain numbers of groups."""
+    if table is not None:
+        row = table.quantities[name]
+        return np.array([to_si(item, row.dimension, name, row.typical) for item in items], dtype=float)
+    try:
+        return np.array([float(item) for item in items])
+    except (TypeError, ValueError):
+        raise InputError(f"{name} = {show(value)}; {advice}") from None
+
+
 def given_values(over: Over, value: Any, contact: Contact | None) -> Array:
     """Return one or many values of the coordinate as positive numbers."""
     many = _dimensions(over, value) > 0
-    items = list(value) if many else [value]
-    if contact is not None:
-        row = contact.INPUTS.quantities[over]
-        found = np.array([to_si(item, row.dimension, over, row.typical) for item in items])
-    else:
-        try:
-            found = np.array([float(item) for item in items])
-        except (TypeError, ValueError):
-            raise InputError(f"{over} = {show(value)}; groups are plain numbers.") from None
+    table = None if contact is None else contact.INPUTS
+    found = plain_numbers(over, value, list(value) if many else [value], table, "groups are plain numbers.")
     if not (np.isfinite(found) & (found > 0)).all():
         raise InputError(f"{over} = {show(value)} must be finite and positive.")
     return found if many else found[0]

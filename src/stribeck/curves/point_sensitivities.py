@@ -22,7 +22,7 @@ from stribeck.equations.point.observables import WITHIN, FrictionWithin, observa
 from stribeck.equations.point.system import Equations, Unknowns
 from stribeck.numerics.settings import LOG_STEP
 from stribeck.quantities.outputs import AREA, GROUPS
-from stribeck.solver.point.sensitivity import derivatives_along, state_derivatives
+from stribeck.solver.point.sensitivity import derivatives_along
 from stribeck.solver.point.solution import PointSolution, finish_point
 from stribeck.solver.point.solve import solve_cold
 from stribeck.solver.point.state import PointObservables, with_area
@@ -55,23 +55,24 @@ def ball_derivatives(
         more, less = (replace(values, **{name: here * math.exp(step)}) for step in (SMALL, -SMALL))
         return (total(more) - total(less)) / (2 * SMALL)
 
-    by_groups, by_model = dict.fromkeys(GROUPS, 0.0), dict[str, float]()
-    if groups.speed == 0:
-        by_groups = dict(zip(GROUPS, factor * values.sliding * rest_derivatives(contact, rtol), strict=True))
-    else:
+    def slopes_along(directions: Mapping[str, Callable[[float], Groups]]) -> dict[str, float]:
+        """Return the derivatives along directions of the groups and their model."""
         measure = partial(_measured, values, beta, groups.law if asperities.observable == AREA else None)
-        changes = state_derivatives(state, measure=measure)
-        for i, name in enumerate(GROUPS):
-            here = float(getattr(groups, name))
-            if here > 0:
-                rate = float(changes[asperities.observable][i])
-                ends = [total(_moved(values, changes, i, name, step), more=rate * step) for step in (SMALL, -SMALL)]
-                by_groups[name] = (ends[0] - ends[1]) / (2 * SMALL)
-        for name, along in _of_model(contact, groups).items():
-            changes = derivatives_along(state, {name: along}, measure)
-            rate = float(changes[asperities.observable][0])
-            ends = [total(_changed(values, changes, 0, step), more=rate * step) for step in (SMALL, -SMALL)]
-            by_model[name] = (ends[0] - ends[1]) / (2 * SMALL)
+        found = {}
+        for name, along in directions.items():
+            changes = {each: float(rate) for each, (rate,) in derivatives_along(state, {name: along}, measure).items()}
+            rate = changes[asperities.observable]
+            ends = [total(_moved(values, changes, along(step), step), more=rate * step) for step in (SMALL, -SMALL)]
+            found[name] = (ends[0] - ends[1]) / (2 * SMALL)
+        return found
+
+    if groups.speed == 0:
+        by_groups, by_model = factor * values.sliding * rest_derivatives(contact, rtol), dict[str, float]()
+    else:
+        alive = {name: partial(_at, groups, name) for name in GROUPS if float(getattr(groups, name)) > 0}
+        own = slopes_along(alive)
+        by_groups = np.array([own.get(name, 0.0) for name in GROUPS])
+        by_model = slopes_along(_of_model(contact, groups))
     by_beta = (total(values, beta * math.exp(SMALL)) - total(values, beta * math.exp(-SMALL))) / (2 * SMALL)
     direct = through_factor(contact, factor * values.sliding * amount)
     direct["beta"] = direct.get("beta", 0.0) + by_beta
@@ -80,7 +81,7 @@ def ball_derivatives(
         direct["wetted_radius"] = by_edge = slope("_wetted_radius")
         for name, exponent in WIDTH_EXPONENTS.items():
             direct[name] = direct.get(name, 0.0) - exponent * by_edge
-    return solution, np.array([*by_groups.values()]), by_model, direct
+    return solution, by_groups, by_model, direct
 
 
 def _of_model(contact: Contact, groups: Groups) -> dict[str, Callable[[float], Groups]]:
@@ -99,22 +100,17 @@ def _of_model(contact: Contact, groups: Groups) -> dict[str, Callable[[float], G
     return found
 
 
-def _moved(values: PointObservables, changes: Mapping[str, Array], column: int, name: str, step: float) -> PointObservables:
-    """Return the observables after a small step of the logarithm of a group, to first order."""
-    groups = values._groups
-    beside = replace(groups, **{name: float(getattr(groups, name)) * math.exp(step)})  # type: ignore[arg-type]
-    return replace(_changed(values, changes, column, step), _groups=beside)
+def _at(groups: Groups, name: str, step: float) -> Groups:
+    return replace(groups, **{name: float(getattr(groups, name)) * math.exp(step)})  # type: ignore[arg-type]
 
 
-def _changed(values: PointObservables, changes: Mapping[str, Array], column: int, step: float) -> PointObservables:
-    """Return the observables after a small step along a direction, to first order."""
-    moved: dict[str, Any] = {
-        each: getattr(values, each, 0.0) + step * float(change[column]) for each, change in changes.items() if each != AREA
-    }
+def _moved(values: PointObservables, rates: Mapping[str, float], beside: Groups, step: float) -> PointObservables:
+    """Return the observables after a small step along a direction to other groups, to first order."""
+    moved: dict[str, Any] = {name: getattr(values, name, 0.0) + step * rate for name, rate in rates.items() if name != AREA}
     more, within = [moved.pop(each) for each in WITHIN if each in moved], values._within
     if within is not None:
         moved["_within"] = lambda which, log_radius: within(which, log_radius) + more[which]
-    return replace(values, **moved)
+    return replace(values, **moved, _groups=beside)
 
 
 def _measured(of: PointObservables, beta: float, law: Any, equations: Equations, y: Unknowns) -> dict[str, float]:

@@ -5,55 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from enum import StrEnum
-from typing import Literal, Protocol, TypeVar
-
-import numpy as np
+from typing import Literal, TypeVar, get_args
 
 from stribeck._types import Array
-from stribeck.contacts.regime import (
-    BOUNDARY_FLUID_SHARE,
-    HYDRODYNAMIC_CONTACT_SHARE,
-    REGIMES,
-    Regime,
-    friction_share,
-    regime_numbers,
-    regime_of,
-)
+from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime
+from stribeck.curves.landmarks import Landmark
 from stribeck.quantities.units import InputError, show
 
-__all__ = [
-    "BOUNDARY_FLUID_SHARE",
-    "HYDRODYNAMIC_CONTACT_SHARE",
-    "METHODS",
-    "Method",
-    "Regime",
-    "Transition",
-    "check_method",
-    "check_transition",
-    "excess",
-    "ranges_of",
-    "regime_of",
-    "regimes_along",
-]
+Method = Literal["solver", "atlas"]  # Where states come from: solved, or read off :mod:`stribeck.atlas`
 
-Method = Literal["solver", "atlas"]
+METHODS: tuple[Method, ...] = get_args(Method)
 
 Share = TypeVar("Share", float, Array)
-
-METHODS: tuple[Method, ...] = ("solver", "atlas")
-"""Where states come from: solved, or read off :mod:`stribeck.atlas`."""
-
-
-class Place(Protocol):
-    """A named place of a curve: a transition that was located."""
-
-    @property
-    def name(self) -> str:
-        """Its name."""
-
-    @property
-    def value(self) -> float:
-        """Where along the curve."""
 
 
 class Transition(StrEnum):
@@ -95,14 +58,8 @@ def check_method(method: str) -> Method:
     raise InputError(f"method = {show(method)}; it must be {' or '.join(map(repr, METHODS))}.")
 
 
-def regimes_along(fluid_load_share: Array, by_asperities: Array, friction: Array) -> tuple[Regime, ...]:
-    """Return the lubrication regime of each point of a curve, from the friction that asperities cause and all of it."""
-    numbers = regime_numbers(np.asarray(fluid_load_share), friction_share(by_asperities, np.asarray(friction) - by_asperities))
-    return tuple(REGIMES[number] for number in numbers.tolist())
-
-
 def ranges_of(
-    values: Array, regimes: Sequence[Regime], transitions: Iterable[Place]
+    values: Array, regimes: Sequence[Regime], transitions: Iterable[Landmark]
 ) -> tuple[tuple[Regime, float, float], ...]:
     """Return the regimes of points along a curve, ascending: name, and the values between which it holds.
 

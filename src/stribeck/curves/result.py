@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass, field, replace
-from importlib import import_module
 from numbers import Real
 from typing import Any, Self
 
@@ -20,12 +19,14 @@ from stribeck.contacts.friction import Definition, FrictionArray
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.notes import HARD_PREFIX, law_notes, minimum_note
+from stribeck.contacts.regime import REGIMES, Regime, friction_share, regime_numbers
 from stribeck.curves.coordinate import Over, check_points, given_values
 from stribeck.curves.friction_path import FrictionPath
 from stribeck.curves.landmarks import Landmark
-from stribeck.curves.regime import Method, Regime, Transition, check_transition, ranges_of, regimes_along
+from stribeck.curves.regime import Method, Transition, check_transition, ranges_of
 from stribeck.curves.simulator_model import StribeckModel, simulator_model
 from stribeck.curves.source import CurveValues, Readings
+from stribeck.curves.table import curve_dict, curve_table
 from stribeck.files.results import Exported, Labelled
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
@@ -292,7 +293,9 @@ class StribeckCurve(Exported, Shown, ByValue):
     @property
     def regimes(self) -> tuple[Regime, ...]:
         """Lubrication regime of each point."""
-        return regimes_along(self.observable("fluid_load_share"), self.friction.asperities, self.friction)
+        friction = self.friction
+        by_asperities = friction_share(friction.asperities, np.asarray(friction) - friction.asperities)
+        return tuple(REGIMES[number] for number in regime_numbers(self.observable("fluid_load_share"), by_asperities).tolist())
 
     @cached_property
     def regime_ranges(self) -> tuple[tuple[Regime, float, float], ...]:
@@ -423,17 +426,10 @@ class StribeckCurve(Exported, Shown, ByValue):
         dict
             Numbers, arrays, text, lists and dictionaries of these.
         """
-        found: dict[str, Any] = self._tables.curve_dict(self)
-        return found
+        return curve_dict(self)
 
     def _labelled(self) -> Labelled:
-        found: Labelled = self._tables.curve_table(self)
-        return found
-
-    @property
-    def _tables(self) -> Any:
-        # By name, as pictures are: the table needs the curve.
-        return import_module("stribeck.curves.table")
+        return curve_table(self)
 
     def _card(self) -> Card:
         if not len(self):

@@ -65,11 +65,6 @@ class Source(ABC):
 
     @property
     @abstractmethod
-    def sliding(self) -> float:
-        """Fraction of the sliding friction of asperities that acts, with its sign."""
-
-    @property
-    @abstractmethod
     def outcome(self) -> Outcome:
         """CONVERGED, or why the path ends early."""
 
@@ -112,9 +107,9 @@ class Source(ABC):
         """Return whether no error at a place exceeds what is accepted."""
         return accepted >= self.rtol
 
-    @abstractmethod
     def solution_at(self, s: float) -> Any:
         """Return the solution at a place to the tolerance of the numbers, or raise the error of its outcome."""
+        return self.solved(s, self.rtol)
 
     @abstractmethod
     def solved(self, s: float, rtol: float) -> Any:

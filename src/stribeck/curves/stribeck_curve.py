@@ -180,7 +180,9 @@ def stribeck_curve(
 def _line(coordinate: Coordinate, values: Array, rtol: float) -> LineProblem | LineKnots:
     """Return the states of a line along a coordinate, between values of it."""
     direction: tuple[float, float, float] = tuple(coordinate.direction.tolist())
-    return line_problem(coordinate.groups_at, direction, rtol, coordinate.is_uniform(values))
+    # In Hertz units the model may vary with the load.
+    first, last = (coordinate.groups_at(math.log(value)).model for value in (values[0], values[-1]))
+    return line_problem(coordinate.groups_at, direction, rtol, first == last)
 
 
 def _refuse(line: LineProblem | LineKnots, path: Any, groups: Groups, contact: Contact | None) -> NoReturn:

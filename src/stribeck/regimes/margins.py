@@ -14,8 +14,8 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.groups import Geometry
+from stribeck.contacts.regime import Regime
 from stribeck.curves.line_source import LineSource
-from stribeck.curves.regime import Regime
 from stribeck.curves.result import StribeckCurve, path_of
 from stribeck.files.datasets import Column, listed
 from stribeck.files.results import Labelled, Tabled

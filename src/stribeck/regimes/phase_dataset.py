@@ -12,8 +12,7 @@ from stribeck.asperity_friction.coulomb import as_asperity_friction
 from stribeck.contact_laws.law import law_attributes
 from stribeck.contacts.contact import part_attributes
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.regime import REGIMES
-from stribeck.curves.regime import BOUNDARY_FLUID_SHARE
+from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, REGIMES
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS

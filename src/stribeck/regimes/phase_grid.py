@@ -17,11 +17,12 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.contacts.inputs import InputTable
+from stribeck.curves.coordinate import plain_numbers
 from stribeck.curves.regime import Transition
 from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import COLUMNS, LINE
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.units import InputError, show
 from stribeck.solver.solve import as_groups, with_law
 
 AXES = ("load", "roughness", "speed")  # The dimensions of a diagram, in their order
@@ -179,17 +180,8 @@ def _points(points: int | Mapping[str, int] | None, kind: Kind) -> dict[str, int
 def _axis(name: str, value: Any, table: InputTable | None, points: int) -> Array:
     """Return the values of one axis, ascending."""
     items = [value] if isinstance(value, str) or np.ndim(value) == 0 else list(value)
-    if table is not None:
-        row = table.quantities[name]
-        numbers = [to_si(item, row.dimension, name, row.typical) for item in items]
-    else:
-        try:
-            numbers = [float(item) for item in items]
-        except (TypeError, ValueError):
-            raise InputError(
-                f"{name} = {show(value)}; groups are plain numbers, for units give a LineContact or PointContact."
-            ) from None
-    found = np.array(numbers, dtype=float)
+    advice = "groups are plain numbers, for units give a LineContact or PointContact."
+    found = plain_numbers(name, value, items, table, advice)
     lowest = "positive" if name == "load" or len(found) == 2 else "zero or positive"
     too_low = (found <= 0).any() if lowest == "positive" else (found < 0).any()
     if not len(found) or found.ndim != 1 or not np.isfinite(found).all() or too_low or (np.diff(found) <= 0).any():

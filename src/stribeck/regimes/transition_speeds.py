@@ -15,7 +15,7 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.parts import PURE_SLIDING
-from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
+from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
 from stribeck.numerics.events import rising_zeros
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
