@@ -228,7 +228,12 @@ def _gather(client: Any, chains: Sequence[Chain], keep: Keep, pause: Pause) -> N
                 continue
             waiting.discard(news)
             if news.status == "finished":  # once more, as what was sent on the way may have been lost
-                keep_new(_of_same_version(*news.result()))
+                there, rows = news.result()
+                if there != version("stribeck"):
+                    raise InputError(
+                        f"a worker has stribeck {there}, this is {version('stribeck')}; install the same version on both."
+                    )
+                keep_new(rows)
             elif news.status == "error" and type(news.exception()).__name__ == "KilledWorker":
                 died += 1
             else:
@@ -257,12 +262,6 @@ def _solve_there(chain: Chain, topic: str) -> tuple[str, list[Row]]:
 
     chain.solve(kept)
     return version("stribeck"), rows
-
-
-def _of_same_version(there: str, rows: list[Row]) -> list[Row]:
-    if there != version("stribeck"):
-        raise InputError(f"a worker has stribeck {there}, this is {version('stribeck')}; install the same version on both.")
-    return rows
 
 
 def _reason(future: Any) -> str:

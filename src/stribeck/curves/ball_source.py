@@ -115,13 +115,6 @@ class CutOffs:
         return float(by_shear), float(by_pressure)
 
 
-def _has_closed_friction(coordinate: Coordinate, ends: Array) -> bool:
-    """Return whether the friction follows from the observables alone: the far film has a closed form up to where it ends."""
-    rule = RULES["point"]
-    inputs = [rule.of_contact(coordinate.contact_at(math.log(end))) for end in ends]
-    return rule.is_enough(coordinate.groups_at(math.log(ends[-1])).model, inputs)
-
-
 def _first_state(problem: BallKnots, start: float, end: float) -> tuple[Knot | None, Outcome]:
     """Return the first state from fast to slow that can be solved, and why none is faster."""
     outcome, step = Outcome.CONVERGED, MAX_LOG_STEP / WINDOW
@@ -149,7 +142,9 @@ def ball_source(
     # The film is smooth at high speed.
     start, places, rtol_of_states = coordinate.groups_at(math.log(values[-1])), np.log(values), max(rtol, RTOL_RANGE[0])
     ends = values[[0, -1]] if ends is None else ends
-    is_closed = _has_closed_friction(coordinate, ends)
+    # Friction follows from the observables alone if the far film has a closed form up to where it ends.
+    inputs = [RULES["point"].of_contact(coordinate.contact_at(math.log(end))) for end in ends]
+    is_closed = RULES["point"].is_enough(coordinate.groups_at(math.log(ends[-1])).model, inputs)
     problem = BallKnots(coordinate.groups_at, rtol_of_states, None if is_closed else CutOffs(coordinate, beta), has_area)
     fastest, failure = _first_state(problem, float(places[-1]), float(places[0]))
     path = HermitePath(problem, (), failure)

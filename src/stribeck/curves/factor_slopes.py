@@ -9,7 +9,6 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.groups import Groups
 from stribeck.contacts.parts import part_names
 from stribeck.contacts.with_parts import factor_exponents
 from stribeck.numerics.settings import LOG_STEP
@@ -31,13 +30,7 @@ def rest_derivatives(contact: Contact, rtol: float) -> Array:
     for k, name in enumerate(GROUPS):
         here = float(getattr(contact.groups, name))
         if here > 0 and not asperities.is_constant:
-            ends = [
-                asperities.amount(solve(_moved(contact.groups, name, here * math.exp(step)), rtol=rtol))[0]
-                for step in (LOG_STEP, -LOG_STEP)
-            ]
+            beside = [replace(contact.groups, **{name: here * math.exp(step)}) for step in (LOG_STEP, -LOG_STEP)]  # type: ignore[arg-type]
+            ends = [asperities.amount(solve(each, rtol=rtol))[0] for each in beside]
             found[k] = (ends[0] - ends[1]) / (2 * LOG_STEP)
     return found
-
-
-def _moved(groups: Groups, name: str, value: float) -> Groups:
-    return replace(groups, **{name: value})  # type: ignore[arg-type]

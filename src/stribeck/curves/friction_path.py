@@ -14,10 +14,10 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asperity_friction.coulomb import as_asperity_friction
 from stribeck.contacts.friction import Definition, Friction, FrictionArray, check_definition, coefficients, friction_of
-from stribeck.contacts.regime import friction_share
+from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, friction_share
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.line_source import PathSource
-from stribeck.curves.regime import Transition, excess
+from stribeck.curves.regime import Transition
 from stribeck.curves.source import Coefficients, CurveValues, Parts, Readings, Source
 from stribeck.numerics.dual import Dual, slope_of
 from stribeck.numerics.events import Event, first_zero, least_by_slope
@@ -25,7 +25,7 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.lazy import cached_property
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["FrictionPath", "vanishing"]
+__all__ = ["FrictionPath"]
 
 LOCATION_LOG_TOLERANCE = 1e-9  # Change of ln(value) to which a landmark is located; errors of its state are added
 LOG_STEP = 1e-3  # Step of ln(value) in derivatives by real differences
@@ -34,10 +34,11 @@ MAX_POLISH_STATES = 4  # Most states solved for one landmark: each squares the e
 
 def vanishing(mark: Transition, fluid: Any, contact: Any, viscous: Any) -> Any:
     """Return what vanishes at a transition, from the fluid's load share and both parts of the friction."""
-    # Of the minimum the friction itself: where it changes its sign its size is least.
-    if mark is Transition.MINIMUM:
+    if mark is Transition.MINIMUM:  # where friction changes its sign its size is least
         return contact + viscous
-    return excess(mark, fluid, friction_share(contact, viscous))
+    if mark is Transition.HYDRODYNAMIC_START:
+        return friction_share(contact, viscous) - HYDRODYNAMIC_CONTACT_SHARE
+    return fluid - (BOUNDARY_FLUID_SHARE if mark is Transition.BOUNDARY_END else 0.5)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,11 +93,6 @@ class FrictionPath:
         """Return the derivative of the friction at a place."""
         return float(self.slopes(np.array([s]))[0])
 
-    @property
-    def moves(self) -> bool:
-        """Whether the surfaces move: at rest the friction is that of the dry contact everywhere."""
-        return bool(self.source.coordinate.groups_at(self.source.ends[0]).speed > 0)
-
     def known(self, places: Array) -> tuple[Array, Array, Array, Array]:
         """Return those places at which there are numbers, the fluid's load share and both parts of the friction."""
         parts = np.stack(self.parts(places))
@@ -117,8 +113,8 @@ class FrictionPath:
 
     def event(self, mark: Transition) -> Event | None:
         """Return where a transition or the minimum lies, or None where there is none."""
-        if mark is Transition.MINIMUM and not self.moves:
-            return None
+        if mark is Transition.MINIMUM and self.source.coordinate.groups_at(self.source.ends[0]).speed == 0:
+            return None  # at rest the friction is that of the dry contact everywhere
         places, *parts = self._searched
         event, sizes = self.first(mark, places, *parts), np.abs(vanishing(mark, *parts))
         if event is None and mark is Transition.MINIMUM and len(sizes):

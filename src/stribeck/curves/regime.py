@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from enum import StrEnum
-from typing import Literal, TypeVar, get_args
+from typing import Literal, get_args
 
 from stribeck._types import Array
 from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime
@@ -15,8 +15,6 @@ from stribeck.quantities.units import InputError, show
 Method = Literal["solver", "atlas"]  # Where states come from: solved, or read off :mod:`stribeck.atlas`
 
 METHODS: tuple[Method, ...] = get_args(Method)
-
-Share = TypeVar("Share", float, Array)
 
 
 class Transition(StrEnum):
@@ -42,13 +40,6 @@ def check_transition(name: str) -> Transition:
     except ValueError:
         known = ", ".join(repr(one.name.lower()) for one in Transition)
         raise InputError(f"name = {show(name)}; a curve is asked for one of {known}.") from None
-
-
-def excess(name: Transition, fluid: Share, by_asperities: Share) -> Share:
-    """Return how far the fluid's share in the load, or that of asperities in friction, is above a transition's threshold."""
-    if name == Transition.HYDRODYNAMIC_START:
-        return by_asperities - HYDRODYNAMIC_CONTACT_SHARE
-    return fluid - (BOUNDARY_FLUID_SHARE if name == Transition.BOUNDARY_END else 0.5)
 
 
 def check_method(method: str) -> Method:

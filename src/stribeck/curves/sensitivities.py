@@ -17,6 +17,7 @@ from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.parts import part_names
 from stribeck.contacts.with_parts import exponents_of, models_at_both_sides
 from stribeck.curves.factor_slopes import rest_derivatives, through_factor
+from stribeck.curves.point_sensitivities import ball_derivatives
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.dual import Dual, slope_of
 from stribeck.numerics.threads import one_blas_thread
@@ -91,13 +92,10 @@ def _of_cylinder(contact: Contact, rtol: float, definition: Definition) -> Deriv
     return solution, by_groups, through, through_factor(contact, friction.asperities) | {"beta": friction.fluid}
 
 
-def _of_ball(contact: Contact, rtol: float, definition: Definition) -> Derivatives:
-    from stribeck.curves.point_sensitivities import ball_derivatives
-
-    return ball_derivatives(contact, rtol, definition)
-
-
-SENSITIVITIES: dict[str, Callable[[Contact, float, Definition], Derivatives]] = {"line": _of_cylinder, "point": _of_ball}
+SENSITIVITIES: dict[str, Callable[[Contact, float, Definition], Derivatives]] = {
+    "line": _of_cylinder,
+    "point": ball_derivatives,
+}
 """The derivatives of the friction of a solved state, by geometry."""
 
 

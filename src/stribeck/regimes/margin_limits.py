@@ -46,11 +46,6 @@ def scanned_rtol(contact: Contact, rtol: float) -> float:
     return max(rtol, SEARCHES[contact.groups.geometry].rtol)
 
 
-def scan_rtol(contact: Contact, rtol: float) -> float:
-    """Return the tolerance of the curves on which changes of regime are looked for."""
-    return max(rtol, SEARCHES[contact.groups.geometry].coarse)
-
-
 def physical_bounds(contact: Contact, name: str) -> tuple[float, float]:
     r"""Return between which values an input of a contact can be sought, whatever the model says beyond.
 

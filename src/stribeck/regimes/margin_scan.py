@@ -18,7 +18,7 @@ from stribeck.curves.regime import Transition
 from stribeck.curves.stribeck_curve import begun
 from stribeck.numerics.events import Event
 from stribeck.quantities.outcome import Outcome
-from stribeck.regimes.margin_limits import limits, scan_rtol, with_smallest
+from stribeck.regimes.margin_limits import SEARCHES, limits, with_smallest
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve_error import SolveError
 
@@ -122,7 +122,7 @@ class Scan:
             if is_inside and whole.coefficients == (*coefficients(start, None, None), self.definition):
                 return whole
         bounds, state = (math.exp(ends[0]), math.exp(ends[1])), self.state if start is self.contact else None
-        path = begun(start, name, bounds, scan_rtol(start, self.rtol), self.definition, state)
+        path = begun(start, name, bounds, max(self.rtol, SEARCHES[start.groups.geometry].coarse), self.definition, state)
         if start is self.contact and isinstance(path.source, LineSource):
             self.state = path.source.state_at(here)
         return path

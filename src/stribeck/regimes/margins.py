@@ -125,7 +125,8 @@ def regime_margins(
         notes.append("Viscosity has no margins: this fluid thins with the shear rate, so that speed does not stand for it.")
     if contact.speed > 0:
         found[0] = _within(found[0], physical_bounds(contact, "speed"))
-    close = [mark for margin in found for mark in (margin.less, margin.more) if mark is not None and _at_threshold(mark)]
+    marks = [mark for margin in found for mark in (margin.less, margin.more) if mark is not None]
+    close = [mark for mark in marks if 0 < mark.factor < math.inf and abs(math.log(mark.factor)) < THRESHOLD]
     if close:
         notes.append(f"The contact is at the threshold to {close[0].regime} lubrication.")
     return RegimeMargins(present, tuple(found), tuple(notes), contact.groups.geometry)
@@ -149,7 +150,3 @@ def _of_viscosity(contact: Contact, speed: Margin) -> Margin:
     )
     low, high = (eta * (end / contact.speed) for end in speed.searched)
     return Margin("viscosity", less, more, (low, high))
-
-
-def _at_threshold(mark: Crossing) -> bool:
-    return 0 < mark.factor < math.inf and abs(math.log(mark.factor)) < THRESHOLD

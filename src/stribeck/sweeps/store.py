@@ -76,7 +76,8 @@ class Store:
 
     def __init__(self, path: Path, db: sqlite3.Connection, note: str, values: dict[str, list[str]]) -> None:
         self.path, self.note = path, note  # What was found on opening, such as the name of a sweep that had died
-        self._db, self._name = db, _new_name()
+        self._db = db
+        self._name = {"pid": os.getpid(), "host": socket.gethostname(), "key": secrets.token_hex(8)}
         self._values = values  # Unit and meaning of the numbers of states
         done = self.done()
         self.total, self.found = len(done), int(done.sum())  # States of the design, and those that earlier runs have finished
@@ -253,11 +254,6 @@ def _called(writer: dict[str, Any] | None) -> str:
         return "another process"
     here = writer["host"] == socket.gethostname()
     return f"process {writer['pid']} on {'this machine' if here else writer['host']}"
-
-
-def _new_name() -> dict[str, Any]:
-    """Return what a sweep that fills a store calls itself."""
-    return {"pid": os.getpid(), "host": socket.gethostname(), "key": secrets.token_hex(8)}
 
 
 def _make(db: sqlite3.Connection, design: SweepDesign) -> None:

@@ -163,11 +163,12 @@ def propagate(
     slopes += contact.beta * (by_drag + middle.values[VISCOUS] * of_shearing)
     parts = dict(zip(names, ((slopes * widths) ** 2).tolist(), strict=True))
     total = sum(parts.values()) or 1.0
+    regime_of_samples = regime_numbers(1 - share, friction_share(dry, viscous))
     return Uncertainty(
         contact=contact,
         errors=sigmas,
         spreads=tuple(spreads),
-        regimes=_regimes(share, friction_share(dry, viscous)),
+        regimes={name: float((regime_of_samples == number).mean()) for number, name in enumerate(REGIMES)},
         contributions={name: part / total for name, part in sorted(parts.items(), key=lambda pair: -pair[1])},
         method=method,
         notes=notes,
@@ -239,12 +240,6 @@ def _power(contact: Contact, function: Any, inputs: tuple[str, ...]) -> list[flo
 def _spread(name: str, label: str, value: float, samples: Array, dimension: str = "number") -> Spread:
     low_95, low_68, median, high_68, high_95 = np.quantile(samples, [0.025, 0.16, 0.5, 0.84, 0.975]).tolist()
     return Spread(name, label, float(value), median, (low_68, high_68), (low_95, high_95), dimension)
-
-
-def _regimes(share: Array, dry: Array) -> dict[str, float]:
-    """Return the part of the samples in each regime, by the contact's share of their load and of their friction."""
-    found = regime_numbers(1 - share, dry)
-    return {name: float((found == number).mean()) for number, name in enumerate(REGIMES)}
 
 
 def _transitions(contact: Contact, sigmas: Mapping[str, float], definition: Definition) -> list[Spread]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,18 +21,19 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
-from stribeck.contacts.groups import Geometry, Groups
+from stribeck.contacts.groups import Geometry
 from stribeck.contacts.model import BASE_MODEL, Model
 from stribeck.contacts.with_parts import models_at_both_sides
 from stribeck.numerics.dual import Dual
 from stribeck.numerics.scattered import Scattered, lengths_of
 from stribeck.quantities.formats import format_percent
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outputs import GROUPS, OUTPUT_TABLES
 from stribeck.quantities.units import InputError
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["FILM_NAMES", "LOG_STEP", "SampledStates", "State", "films_of"]
+__all__ = ["LOG_STEP", "SampledStates", "State", "films_of"]
 
 FILM_NAMES = ("central_gap", "minimum_gap", "flux_gap")
 
@@ -54,19 +55,13 @@ SHARES = ("contact_load_share", "fluid_load_share")
 VISCOUS = 1  # Place of the viscous friction among the observables of a state
 
 
-def logs_of(contact: Contact) -> tuple[str, ...]:
-    """Return what is read as a logarithm: the films, and what asperities rub by where that is not their load."""
-    observable = contact.friction_of_asperities.observable
-    return (*films_of(contact.groups.geometry), *(() if observable == SHARES[0] else (observable,)))
-
-
 def films_of(geometry: Geometry) -> tuple[str, ...]:
     """Return the films that states of a geometry have, of :data:`FILM_NAMES`."""
     return tuple(name for name in FILM_NAMES if name in OUTPUT_TABLES[geometry].names)
 
 
 class State(NamedTuple):
-    """Log odds of the load share, viscous friction and logarithms of :func:`logs_of` of a state."""
+    """Log odds of the load share, viscous friction and logarithms of :attr:`SampledStates.logs` of a state."""
 
     values: Array
     slopes: Array  # Derivatives by the logarithms of the uncertain inputs, shape (inputs, values)
@@ -81,16 +76,17 @@ class SampledStates:
     of_groups: Array  # Powers with which they enter the three groups
     definition: Definition  # Of friction
     rtol: float  # Relative tolerance of solved states
-    neighbours: Neighbours = field(init=False)
 
-    def __post_init__(self) -> None:
-        """Take Neighbours, as yet without states."""
-        object.__setattr__(self, "neighbours", Neighbours(self.rtol))
+    @cached_property
+    def neighbours(self) -> Neighbours:
+        """The states that were solved."""
+        return Neighbours(self.rtol)
 
     @property
     def logs(self) -> tuple[str, ...]:
-        """What is read as a logarithm."""
-        return logs_of(self.contact)
+        """What is read as a logarithm: the films, and what asperities rub by where that is not their load."""
+        observable = self.contact.friction_of_asperities.observable
+        return (*films_of(self.contact.groups.geometry), *(() if observable == SHARES[0] else (observable,)))
 
     def log_slopes(self, name: str, state: State) -> Array:
         """Return the derivatives of the logarithm of the asperities' share, or of what is read as one, by the inputs."""
@@ -102,15 +98,15 @@ class SampledStates:
         """Return states at logarithms of the inputs off the atlas, None if it does not have them all."""
         groups = self.contact.groups
         is_held = groups.model == BASE_MODEL and self.logs == films_of(groups.geometry)
-        table = atlas.for_groups(groups) if is_held else None
-        if table is None:
+        if not is_held or atlas.for_groups(groups) is None:
             return None
-        samples = _scale_groups(groups, offsets @ self.of_groups)
+        moved = {name: np.asarray(getattr(groups, name)) for name in GROUPS}
+        factors = np.exp(offsets @ self.of_groups).T
+        samples = replace(groups, **{name: here * each for (name, here), each in zip(moved.items(), factors, strict=True)})
         if not np.all(atlas.covers(samples)):
             return None
         inputs = RULES[groups.geometry].of_contact(self.contact)
-        films = [name for name in FILM_NAMES if name != "flux_gap" or name in table.functions]
-        found = {name: np.asarray(getattr(atlas, name)(samples)) for name in films}
+        found = {name: np.asarray(getattr(atlas, name)(samples)) for name in self.logs}
         share, viscous = atlas.friction_terms(samples, inputs, self.definition)
         found |= {"contact_load_share": share, "viscous": viscous / inputs["beta"]}
         if not all(np.isfinite(values).all() for values in found.values()):
@@ -287,11 +283,6 @@ def _interval_notes(wrong: float, tried: int, solved: int) -> tuple[str, ...]:
             "beyond what this package solves, and there the intervals rest on those nearby. Smaller errors stay within."
         )
     return tuple(notes)
-
-
-def _scale_groups(groups: Groups, offsets: Array) -> Groups:
-    speed, load, roughness = (np.asarray(getattr(groups, name)) * np.exp(offsets[:, i]) for i, name in enumerate(GROUPS))
-    return replace(groups, speed=speed, load=load, roughness=roughness)
 
 
 def _log(value: Dual) -> Dual:
