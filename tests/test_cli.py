@@ -30,8 +30,6 @@ from command_line import (
 
 import stribeck as sb
 from stribeck import Outcome
-from stribeck.cli.running import COMMANDS
-from stribeck.curves import stribeck_curve
 
 GROUPS = ("--groups", "1e-4", "0.1", "1e-3")
 FAST = ("--groups", "0.1", "1e-3", "--range", "0.1", "1", "--points", "3")
@@ -413,8 +411,10 @@ def test_every_help_has_an_example_that_runs(capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "examples").symlink_to(EXAMPLES)
     monkeypatch.setenv("COLUMNS", "300")
-    assert "Example: stribeck" in call(capsys, "--help").out
-    examples = {name: re.findall(r"Example: stribeck (.+)", call(capsys, name, "--help").out) for name in COMMANDS}
+    said = call(capsys, "--help").out
+    commands = re.findall(r"^│ (\w+)  ", said, re.MULTILINE)
+    assert "Example: stribeck" in said and len(commands) == 19
+    examples = {name: re.findall(r"Example: stribeck (.+)", call(capsys, name, "--help").out) for name in commands}
     assert all(example.startswith(name) for name, listed in examples.items() for example in listed) and all(examples.values())
     for command, options in {"solve": ["--force"], "curve": ["--points", "3", "--force"], "sweep": ["--force"]}.items():
         for example in examples[command][: 1 if command == "sweep" else None]:
@@ -527,13 +527,13 @@ def test_a_limit_of_time_keeps_the_finished_points_also_in_a_background_job_that
 
 def test_ctrl_c_before_the_first_point_writes_nothing(capsys, tmp_path, monkeypatch, interrupts):
     interrupts(signal.default_int_handler)
-    whole = stribeck_curve.grown
+    whole = sb.stribeck_curve
 
-    def pressed(*arguments):
+    def pressed(*arguments, **options):
         signal.raise_signal(signal.SIGINT)
-        return whole(*arguments)
+        return whole(*arguments, **options)
 
-    monkeypatch.setattr(stribeck_curve, "grown", pressed)
+    monkeypatch.setattr(sb, "stribeck_curve", pressed)
     answer = call(capsys, "curve", PDMS, "-o", tmp_path / "curve.nc")
     assert answer.code == 130
     assert answer.err == "stribeck: Interrupted; nothing was written.\n"

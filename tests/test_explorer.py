@@ -846,6 +846,21 @@ def test_a_case_whose_shape_stands_in_a_file_is_shown_and_its_shape_drawn_from_a
     assert "profile" not in others(choices.choose(shown, "shape", "cylinder"))
 
 
+def test_a_case_whose_rubber_stands_in_a_file_is_shown_with_the_series_that_was_fitted(tmp_path):
+    omega = np.geomspace(1.0, 1e4, 25)
+    stiffness = 2.0 * (1 + 1.5 * 1j * omega * 1e-2 / (1 + 1j * omega * 1e-2))
+    rows = "".join(f"{w};{e.real};{e.imag}\n" for w, e in zip(omega / (2 * np.pi), stiffness, strict=True))
+    (tmp_path / "rubber.csv").write_text("frequency [Hz];E' [MPa];E'' [MPa]\n" + rows)
+    tables = {**START.tables, "solid": {"master_curve": "rubber.csv"}}
+    tables["contact"] = {name: value for name, value in tables["contact"].items() if name != "modulus"}
+    (tmp_path / "case.toml").write_text(toml_text(tables))
+    case = sb.load_case(tmp_path / "case.toml")
+    shown = inputs.from_case(case)  # the page has no files
+    assert shown.contact.modulus == case.contact.modulus == pytest.approx(2e6 / 0.75, rel=1e-3)
+    assert shown.contact.solid == case.contact.solid
+    check_kept(shown)
+
+
 def test_a_shape_that_moves_the_other_way_does_so_until_it_is_a_cylinder():
     lip = choices.choose(START, "shape", "lip")
     back = lip.edited({}, lip.tables | {"profile": lip.tables["profile"] | {"reversed": True}})
