@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from stribeck._types import Array
 from stribeck.contacts.model import Model
 from stribeck.equations.cavities.system import CavitatedSystem
 from stribeck.equations.film import closed_gap
@@ -21,7 +22,7 @@ from stribeck.numerics.settings import (
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import Level
 
-__all__ = ["LOOSE_OBSERVABLES", "WITHOUT_TOLERANCE", "Pair", "pair_of"]
+__all__ = ["LOOSE_OBSERVABLES", "WITHOUT_TOLERANCE", "Pair", "gap_tails", "modal_amplitudes", "pair_of"]
 
 WITHOUT_TOLERANCE = MINIMA  # Observables whose stated errors rtol does not limit
 # Observables that rtol does not limit in cavitated films: streaks of the wake, and the moment of a thin contact whose panels
@@ -87,7 +88,25 @@ def safety_of(level: Level) -> tuple[float, float]:
     # Where roughness closes the flow, or gas goes by differences of first order, both meshes err by nearly the same.
     if equations.order < 2.0 or (closed_at is not None and level.unknowns.gap.min() < NEAR_MINIMUM * closed_at):
         return SAFETY, 1.0
-    return (1.0, 1.0) if breaks or film.uses_speed else (SMOOTH_SAFETY, NEGLIGIBLE)
+    if breaks or film.uses_speed:
+        return 1.0, 1.0
+    # Before the last coefficients of the gap are as small as first meshes are chosen for, errors do not fall yet: either mesh
+    # may be the nearer one, by chance.
+    return SMOOTH_SAFETY if max(gap_tails(level)) <= NEGLIGIBLE**2 else SAFETY, NEGLIGIBLE
+
+
+def gap_tails(level: Level) -> tuple[float, float]:
+    """Return the last coefficients of the gap in radius and angle over the gap, within twice the scale of the contact."""
+    mesh, log_gap = level.mesh, np.log(level.unknowns.gap)
+    near = mesh.edges[1:] <= 2.0 * 2.0**level.resolution.doublings * (1.0 + 1e-9)
+    return float(np.abs(mesh.legendre(log_gap)[:, near, -2:]).max()), float(modal_amplitudes(level)[-2:].max())
+
+
+def modal_amplitudes(level: Level) -> Array:
+    """Return the largest amplitude of each angular mode of the gap, within twice the scale of the contact."""
+    mesh, h = level.mesh, level.unknowns.gap
+    near = mesh.radii < 2.0 * 2.0**level.resolution.doublings
+    return np.asarray((np.abs(mesh.to_modes @ h) / h.mean(axis=0))[:, near].max(axis=1))
 
 
 def scales_of(values: dict[str, float], speed: float) -> dict[str, float]:

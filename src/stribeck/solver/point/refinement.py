@@ -46,7 +46,7 @@ from stribeck.numerics.settings import (
     SHARE,
 )
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.point.estimate import Pair, pair_of
+from stribeck.solver.point.estimate import Pair, gap_tails, modal_amplitudes, pair_of
 from stribeck.solver.point.level import PROBLEMS, Level, solve_level, transfer
 from stribeck.solver.refinement import newton_tolerance
 
@@ -209,26 +209,12 @@ def finer_in(now: Resolution, radii: bool, angles: bool) -> Resolution:
     return replace(finer, degree=degree, modes=finer.modes if angles else now.modes)
 
 
-def gap_tails(level: Level) -> tuple[float, float]:
-    """Return the last coefficients of the gap in radius and angle over the gap, within twice the scale of the contact."""
-    mesh, log_gap = level.mesh, np.log(level.unknowns.gap)
-    near = mesh.edges[1:] <= 2.0 * 2.0**level.resolution.doublings * (1.0 + 1e-9)
-    return float(np.abs(mesh.legendre(log_gap)[:, near, -2:]).max()), float(modal_amplitudes(level)[-2:].max())
-
-
 def limit_modes(wanted: Resolution) -> Resolution:
     """Return a resolution with at most as many modes as memory and :data:`MAX_MODES` allow."""
     wanted = replace(wanted, modes=min(wanted.modes, MAX_MODES))
     while bytes_of(wanted) > MAX_BYTES and wanted.modes > LEAST_MODES:
         wanted = replace(wanted, modes=2 * ((wanted.modes - 1) // 2))
     return wanted
-
-
-def modal_amplitudes(level: Level) -> Array:
-    """Return the largest amplitude of each angular mode of the gap, within twice the scale of the contact."""
-    mesh, h = level.mesh, level.unknowns.gap
-    near = mesh.radii < 2.0 * 2.0**level.resolution.doublings
-    return np.asarray((np.abs(mesh.to_modes @ h) / h.mean(axis=0))[:, near].max(axis=1))
 
 
 def modes_for(found: Array, amplitude: float) -> int:
