@@ -122,7 +122,18 @@ class Contact(Parts):
         known=4,
         typical_error=0.2,
     )
-    load: float
+    load: Input = Input(
+        label="load",
+        symbol="$F_N$",
+        dimension="load",
+        typical="30 N/m",
+        source="as in examples/pdms_cylinder.toml",
+        usual=(0.1, 1e5),
+        units=("N/m", "kN/m", "N/mm"),
+        letters=("F_N",),
+        known=6,
+        typical_error=0.05,
+    )
     viscosity: Input = Input(
         label="viscosity",
         symbol=r"$\eta$",
@@ -368,7 +379,7 @@ class Contact(Parts):
 
     @property
     def hertz(self) -> HertzScales:
-        """The Hertz scales, see :class:`~stribeck.results.HertzScales`."""
+        """The scales with which results return to SI, see :class:`~stribeck.results.HertzScales`."""
         scaling, slope = self.scaling(), self.slope
         a = self.radius * slope
         mean = self.load / (2 if scaling.dimensions == 1 else math.pi * a) / a
@@ -376,7 +387,10 @@ class Contact(Parts):
 
     @property
     def hersey_number(self) -> float:
-        r"""The Hersey number [-]: :math:`\eta U/F_N` of a line, :math:`\eta U R/F_N` of a ball, U the sum of the speeds."""
+        r"""The Hersey number [-]: :math:`\eta U/F_N` of a line, :math:`\eta U R/F_N` of a ball.
+
+        :math:`U` is the sum of the surface speeds: the number is twice the one that is made with their mean.
+        """
         return self.viscosity * self.speed / self.load * self.radius ** (self.scaling().dimensions - 1)
 
     @property

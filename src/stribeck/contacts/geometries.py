@@ -28,15 +28,6 @@ class LineContact(Contact):
 
     Every quantity is text with a unit (``"10 mm"``) or a bare number in SI units; floats in SI are kept.
 
-    Attributes
-    ----------
-    groups : Groups
-        The dimensionless groups.
-    hertz : HertzScales
-        The scales with which dimensionless results return to SI.
-    hersey_number : float
-        :math:`\eta U/F_N` [-], with that sum :math:`U`: twice the number that is made with a mean speed.
-
     Raises
     ------
     InputError
@@ -61,19 +52,6 @@ class LineContact(Contact):
     0.303
     """
 
-    load: Input = Input(
-        label="load",
-        symbol="$F_N$",
-        dimension="load",
-        typical="30 N/m",
-        source="as in examples/pdms_cylinder.toml",
-        usual=(0.1, 1e5),
-        units=("N/m", "kN/m", "N/mm"),
-        letters=("F_N",),
-        known=6,
-        typical_error=0.05,
-    )
-
     WIDTH: ClassVar[str] = "Hertz half-width"
 
 
@@ -83,15 +61,6 @@ class PointContact(Contact):
     r"""A rough ball on a lubricated elastic half-space, in SI units: what a ball-on-disc tribometer has.
 
     Every quantity is text with a unit (``"9.5 mm"``) or a bare number in SI units; floats in SI are kept.
-
-    Attributes
-    ----------
-    groups : Groups
-        The dimensionless groups, with ``geometry="point"``.
-    hertz : HertzScales
-        The scales with which dimensionless results return to SI.
-    hersey_number : float
-        :math:`\eta U R/F_N` [-], with the sum :math:`U`: twice the number that is made with a mean speed.
 
     Raises
     ------
@@ -118,17 +87,13 @@ class PointContact(Contact):
     (0.189, 13.9)
     """
 
-    load: Input = Input(
-        label="load",
-        symbol="$F_N$",
+    load: Input = replace(
+        numbers_of(Contact)["load"],
         dimension="force",
         typical="1.3 N",
         source="as in examples/pdms_ball.toml",
         usual=(1e-6, 1e3),
         units=("mN", "N"),
-        letters=("F_N",),
-        known=6,
-        typical_error=0.05,
     )
     slide_to_roll: Input = replace(numbers_of(Parts)["slide_to_roll"], typical="2.0", lowest=0.0, highest=2.0)
     wetted_radius: Input = Input(

@@ -29,11 +29,6 @@ class InputTable:
     forms: tuple[Form, ...]  # What may be given in the place of some of them
     geometry: Geometry = "line"
 
-    @property
-    def contact(self) -> str:
-        """Name of its contact in Python."""
-        return str(self.kind.__name__)
-
     @cached_property
     def kept(self) -> dict[str, Input]:
         """The inputs that a contact keeps, in the order in which outputs name them."""
@@ -123,7 +118,7 @@ def read_inputs(
     for name, value in given.items():
         if name not in table.quantities:
             known = known_names(name, table.quantities)
-            found.problems.append(f"{name} = {show(value)} is not an input of {table.contact}; {known}")
+            found.problems.append(f"{name} = {show(value)} is not an input of {table.kind.__name__}; {known}")
             continue
         if value is None and name in table.choices:
             continue

@@ -134,7 +134,7 @@ def python_text(shown: Answer) -> str:
         and not inputs.case.errors
     ):
         lines = [f"    {name}={value!r}," for name, value in contact.items() if name != "geometry"]
-        made = "\n".join(["import stribeck as sb", "", f"contact = sb.{inputs.table.contact}(", *lines, ")"])
+        made = "\n".join(["import stribeck as sb", "", f"contact = sb.{inputs.table.kind.__name__}(", *lines, ")"])
     else:
         text = f'r"""{case_text(shown)}"""' if '"""' not in case_text(shown) else repr(case_text(shown))
         write = f'Path("case.toml").write_text({text}, encoding="utf-8")'

@@ -27,10 +27,16 @@ Column = tuple[str | Sequence[str], Any, str, str]  # Dimensions, values, unit a
 
 NETCDF_ENDINGS = (".nc",)
 CSV_ENDINGS = (".csv",)
-DATA_ENDINGS = (*NETCDF_ENDINGS, *CSV_ENDINGS)
 ZARR_ENDINGS = (".zarr",)
 PARQUET_ENDINGS = (".parquet",)
-EXPORT_ENDINGS = (*DATA_ENDINGS, *ZARR_ENDINGS, *PARQUET_ENDINGS)
+EXPORT_ENDINGS = (*NETCDF_ENDINGS, *CSV_ENDINGS, *ZARR_ENDINGS, *PARQUET_ENDINGS)
+
+# What needs a library besides that of datasets: purpose, extra and library.
+LIBRARIES = {
+    NETCDF_ENDINGS: ("a NetCDF file", "data", "netCDF4"),
+    ZARR_ENDINGS: ("a Zarr folder", "data", "zarr"),
+    PARQUET_ENDINGS: ("a Parquet file", "parquet", "pyarrow"),
+}
 
 
 def import_xarray(what: str = "a dataset") -> Any:
@@ -68,10 +74,7 @@ def listed(values: Sequence[Any]) -> Any:
 
 def write_netcdf(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:
     """Write a dataset as NetCDF-4."""
-    try:
-        import netCDF4  # noqa: F401
-    except ImportError:
-        raise MissingExtraError("a NetCDF file", "data", "netCDF4") from None
+    need_extra(*LIBRARIES[NETCDF_ENDINGS])
     with atomic_write(path, NETCDF_ENDINGS, force=force) as temporary:
         try:
             dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
@@ -96,11 +99,10 @@ def write_csv(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -
 
 def write_parquet(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:
     """Write a dataset as a table of Parquet, a row for each point; units and long names are metadata of its columns."""
-    try:
-        import pyarrow
-        from pyarrow import parquet
-    except ImportError:
-        raise MissingExtraError("a Parquet file", "parquet", "pyarrow") from None
+    need_extra(*LIBRARIES[PARQUET_ENDINGS])
+    import pyarrow
+    from pyarrow import parquet
+
     columns = _table(dataset)
     about = [pyarrow.array(column) for column in columns.values()]
     fields = [
@@ -129,10 +131,7 @@ def write_zarr(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) 
 
 def check_folder(path: PathLike, *, force: bool = False) -> Path:
     """Return where a folder of Zarr shall be written, or refuse a place where it cannot."""
-    try:
-        import zarr  # noqa: F401
-    except ImportError:
-        raise MissingExtraError("a Zarr folder", "data", "zarr") from None
+    need_extra(*LIBRARIES[ZARR_ENDINGS])
     target = path_of(path)
     if not target.is_dir():
         return check_writable(path, ZARR_ENDINGS, force=False)
@@ -151,13 +150,10 @@ def check_export(path: PathLike, *, force: bool = False) -> None:
         check_folder(path, force=force)
         return
     check_writable(path, EXPORT_ENDINGS, force=force)
-    for known, purpose, extra, library in (
-        (EXPORT_ENDINGS, "a data file", "data", "xarray"),
-        (NETCDF_ENDINGS, "a NetCDF file", "data", "netCDF4"),
-        (PARQUET_ENDINGS, "a Parquet file", "parquet", "pyarrow"),
-    ):
-        if ending in known:
-            need_extra(purpose, extra, library)
+    need_extra("a data file", "data", "xarray")
+    for endings, needed in LIBRARIES.items():
+        if ending in endings:
+            need_extra(*needed)
 
 
 def write_data(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:

@@ -121,16 +121,11 @@ class TextTable:
         return self.of_columns([i for i in range(len(self.header)) if i != at])
 
 
-def knows_no_name(name: str) -> bool:
-    """Return that a name of a column is not known."""
-    return False
-
-
 def read_table(
     path: Path,
     header_row: int | None = None,
     expected: str = HEADER_ADVICE,
-    knows: Callable[[str], bool] = knows_no_name,
+    knows: Callable[[str], bool] = lambda name: False,
     sheet: str | None = None,
 ) -> TextTable:
     """Return the cells of a file of columns with a header."""

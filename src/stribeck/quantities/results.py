@@ -27,8 +27,10 @@ class Card:
 
     @property
     def all_rows(self) -> list[tuple[str, str]]:
-        """The rows, those of the table among them."""
-        return [*table_rows(self.table), *self.rows]
+        """The rows, those of the table among them: the first cell, and the others with what they are."""
+        head, *rows = self.table or [()]
+        said = [", ".join(f"{name} {cell}" for name, cell in zip(head[1:], row[1:], strict=True) if cell) for row in rows]
+        return [*((row[0], words) for row, words in zip(rows, said, strict=True)), *self.rows]
 
 
 class Shown(Described):
@@ -74,14 +76,6 @@ def brief_text(value: Any) -> str:
     if is_dataclass(value) and not isinstance(value, type):
         return type(value).__name__
     return textwrap.shorten(value if isinstance(value, str) else repr(value), 90, placeholder=" ...")
-
-
-def table_rows(table: Sequence[Sequence[str]]) -> list[tuple[str, str]]:
-    """Return a table with a heading as rows of a card: the first cell, and the others with what they are."""
-    head, *rows = table or [()]
-    return [
-        (row[0], ", ".join(f"{name} {cell}" for name, cell in zip(head[1:], row[1:], strict=True) if cell)) for row in rows
-    ]
 
 
 def table_lines(rows: Sequence[Sequence[str]], right: Sequence[int] = ()) -> list[str]:
