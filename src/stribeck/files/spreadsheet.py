@@ -7,9 +7,10 @@ import math
 import posixpath
 import re
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 from xml.parsers import expat
 
@@ -59,132 +60,97 @@ def sheets_of(path: Path, wanted: str | None = None) -> dict[str, list[tuple[int
 
 def _sheets(path: Path, book: zipfile.ZipFile, wanted: str | None) -> Iterator[tuple[str, list[tuple[int, str]]]]:
     """Yield name and rows of each sheet, or of the one that is wanted."""
-    target_of = {
-        each["Id"]: posixpath.normpath(posixpath.join("/xl", each["Target"])).lstrip("/")
-        for each in _elements(book, "xl/_rels/workbook.xml.rels", "Relationship")
-    }
+    targets: dict[str, str] = {}
+    _parse(
+        book,
+        "xl/_rels/workbook.xml.rels",
+        {"Relationship": lambda each, _: targets.update({each["Id"]: each["Target"]})},
+    )
+    named: list[dict[str, str]] = []
+    _parse(book, "xl/workbook.xml", {"sheet": lambda each, _: named.append(each)})
     names = {
-        each["name"]: target_of[next(value for key, value in each.items() if key.endswith("id") and value in target_of)]
-        for each in _elements(book, "xl/workbook.xml", "sheet")
+        each["name"]: next(targets[value] for key, value in each.items() if key.endswith("id") and value in targets)
+        for each in named
     }
     if wanted is not None and wanted not in names:
         raise InputError(f"{path} has no sheet {show(wanted)}; its sheets are {', '.join(map(show, names))}.")
-    strings = _SharedStrings()
+    strings: list[str] = []
     if "xl/sharedStrings.xml" in book.namelist():
-        _parse(book, "xl/sharedStrings.xml", strings)
-    for name, part in names.items():
+        _parse(book, "xl/sharedStrings.xml", {"si": lambda _, text: strings.append(text)})
+    for name, target in names.items():
         if wanted in (None, name):
-            rows = _Rows(path, strings.found)
-            _parse(book, part, rows)
+            rows = _Rows(path, strings)
+            part = posixpath.normpath(posixpath.join("/xl", target)).lstrip("/")
+            _parse(book, part, {"c": rows.take_cell}, {"row": rows.begin_row})
             yield name, rows.lines()
 
 
-class _Handler:
-    """Handler of the elements of a part of a workbook, whose names come without a namespace."""
-
-    def begin(self, name: str, attributes: dict[str, str]) -> None:
-        """Take the beginning of an element."""
-
-    def end(self, name: str) -> None:
-        """Take the end of an element."""
-
-    def text(self, text: str) -> None:
-        """Take text inside of an element."""
-
-
-def _parse(book: zipfile.ZipFile, part: str, handler: _Handler) -> None:
-    """Give the elements of a part to a handler without keeping any."""
+def _parse(
+    book: zipfile.ZipFile,
+    part: str,
+    take: Mapping[str, Callable[[dict[str, str], str], object]],
+    begin: Mapping[str, Callable[[dict[str, str]], object]] = MappingProxyType({}),
+) -> None:
+    """Give attributes and text of the elements of a part to the functions of their names, at their end or their beginning."""
+    # No element is kept: a sheet may have millions.
     parser = expat.ParserCreate(namespace_separator="}")
     parser.buffer_text = True
+    own: dict[str, str] = {}
+    texts: list[str] = []
+    inside: list[str] = []
 
     def refuse(*_: Any) -> None:
         raise ValueError("it declares entities")
 
+    def started(name: str, attributes: dict[str, str]) -> None:
+        nonlocal own
+        inside.append(name.rpartition("}")[2])
+        if inside[-1] in take:
+            own = attributes
+            texts.clear()
+        if inside[-1] in begin:
+            begin[inside[-1]](attributes)
+
+    def heard(text: str) -> None:
+        if inside[-1] in ("v", "t") and "rPh" not in inside:  # how a text is pronounced is no part of it
+            texts.append(text)
+
+    def ended(_: str) -> None:
+        name = inside.pop()
+        if name in take:
+            take[name](own, "".join(texts))
+
     parser.StartDoctypeDeclHandler = refuse
-    parser.StartElementHandler = lambda name, attributes: handler.begin(name.rpartition("}")[2], attributes)
-    parser.EndElementHandler = lambda name: handler.end(name.rpartition("}")[2])
-    parser.CharacterDataHandler = handler.text
+    parser.StartElementHandler, parser.CharacterDataHandler, parser.EndElementHandler = started, heard, ended
     with book.open(part) as file:
         parser.ParseFile(file)
 
 
-def _elements(book: zipfile.ZipFile, part: str, wanted: str) -> list[dict[str, str]]:
-    """Return the attributes of all elements of a name."""
-    found: list[dict[str, str]] = []
-
-    class Attributes(_Handler):
-        def begin(self, name: str, attributes: dict[str, str]) -> None:
-            if name == wanted:
-                found.append(attributes)
-
-    _parse(book, part, Attributes())
-    return found
-
-
-class _SharedStrings(_Handler):
-    """The table of texts to which cells refer."""
-
-    def __init__(self) -> None:
-        self.found: list[str] = []
-        self.parts: list[str] | None = None
-        self.phonetic = False
-
-    def begin(self, name: str, attributes: dict[str, str]) -> None:
-        if name == "si":
-            self.found.append("")
-        self.phonetic = self.phonetic or name == "rPh"
-        if name == "t" and not self.phonetic:
-            self.parts = []
-
-    def text(self, text: str) -> None:
-        if self.parts is not None:
-            self.parts.append(text)
-
-    def end(self, name: str) -> None:
-        if name == "rPh":
-            self.phonetic = False
-        if name == "t" and self.parts is not None:
-            self.found[-1] += "".join(self.parts)
-            self.parts = None
-
-
 @dataclass
-class _Rows(_Handler):
+class _Rows:
     """The cells of a sheet that hold something."""
 
     path: Path
     strings: list[str]
     cells: dict[int, dict[int, str]] = field(default_factory=dict)
     place: tuple[int, int] = (0, 0)
-    kind: str = ""
-    parts: list[str] = field(default_factory=list)
-    listening: bool = False
     widths: dict[int, int] = field(default_factory=dict)
     count: int = 0
     length: int = 0
 
-    def begin(self, name: str, attributes: dict[str, str]) -> None:
+    def begin_row(self, attributes: dict[str, str]) -> None:
+        self.place = self._checked(int(attributes.get("r", self.place[0] + 1)), 0)
+
+    def take_cell(self, attributes: dict[str, str], text: str) -> None:
         row, column = self.place
-        if name == "row":
-            self.place = self._checked(int(attributes.get("r", row + 1)), 0)
-        elif name == "c":
-            at = _CELL.fullmatch(attributes["r"]) if "r" in attributes else None
-            if "r" in attributes and at is None:
-                raise ValueError(f"a cell is called {show(attributes['r'])}")
-            self.place = self._checked(int(at[2]), _column(at[1])) if at else self._checked(row, column + 1)
-            self.kind, self.parts = attributes.get("t", "n"), []
-        self.listening = name in ("v", "t")
-
-    def text(self, text: str) -> None:
-        if self.listening:
-            self.parts.append(text)
-
-    def end(self, name: str) -> None:
-        self.listening = False
-        if name != "c" or not self.parts:
+        at = _CELL.fullmatch(attributes["r"]) if "r" in attributes else None
+        if "r" in attributes and at is None:
+            raise ValueError(f"a cell is called {show(attributes['r'])}")
+        self.place = row, column = self._checked(int(at[2]), _column(at[1])) if at else self._checked(row, column + 1)
+        if not text:
             return
-        row, column = self.place
-        text = _TEXTS.get(self.kind, str)("".join(self.parts)) if self.kind != "s" else self.strings[int("".join(self.parts))]
+        kind = attributes.get("t", "n")
+        text = self.strings[int(text)] if kind == "s" else _TEXTS.get(kind, str)(text)
         self.length += len(text)
         if self.length > MAX_WORKBOOK_BYTES:
             raise InputError(
@@ -217,12 +183,7 @@ def _column(letters: str) -> int:
     return number
 
 
-def _number(text: str) -> str:
-    return text if math.isfinite(float(text)) else "nan"
-
-
-def _truth(text: str) -> str:
-    return "TRUE" if text == "1" else "FALSE"
-
-
-_TEXTS: dict[str, Callable[[str], str]] = {"n": _number, "b": _truth}
+_TEXTS: dict[str, Callable[[str], str]] = {
+    "n": lambda text: text if math.isfinite(float(text)) else "nan",
+    "b": lambda text: "TRUE" if text == "1" else "FALSE",
+}
