@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -11,9 +10,9 @@ from typing import Annotated, Any
 import numpy as np
 
 from stribeck._types import Array, Indices
-from stribeck.files.datasets import CSV_ENDINGS, Column
+from stribeck.files.datasets import Column, write_columns
 from stribeck.files.results import Exported, Labelled
-from stribeck.files.writing import PathLike, atomic_write
+from stribeck.files.writing import PathLike
 from stribeck.fits.table.rig import TEMPERATURE_TOLERANCE
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.results import ByValue, Card, Told
@@ -158,16 +157,8 @@ class BenchCurve(Exported, Told, ByValue):
         InputError
             If the file cannot be written, or exists and ``force`` is not given.
         """
-        columns = self._columns()
-        with (
-            atomic_write(path, CSV_ENDINGS, force=force) as temporary,
-            temporary.open("w", newline="", encoding="utf-8") as file,
-        ):
-            file.write(f"# stribeck {version('stribeck')}, from {', '.join(self.paths)}\n")
-            file.writelines(f"# {line}\n" for note in self.notes for line in note.splitlines())
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(columns)
-            writer.writerows(zip(*columns.values(), strict=True))
+        above = [f"stribeck {version('stribeck')}, from {', '.join(self.paths)}"]
+        write_columns(path, above + [line for note in self.notes for line in note.splitlines()], self._columns(), force=force)
 
     def _columns(self) -> dict[str, list[str]]:
         """Return header and cells of the columns of the file."""

@@ -83,16 +83,12 @@ class FrictionRule:
         """Return the part of boundary_friction that acts."""
         return sliding_part(2 * groups.model.film.slide)
 
-    def hersey(self, contact: Contact) -> float:
-        """Return the speed at the Hersey number one [m/s]."""
-        return contact.load / contact.viscosity / contact.radius ** (contact.scaling().dimensions - 1)
-
     def speed_per(self, abscissa: str, contact: Contact) -> float:
         """Return the speed [m/s] at the value one [SI] of what friction may be measured against."""
         of = {
             "speed": 1.0,
             "speed_viscosity": 1 / contact.viscosity,
-            "hersey_number": self.hersey(contact),
+            "hersey_number": contact.load / contact.viscosity / contact.radius ** (contact.scaling().dimensions - 1),
             "hersey_per_length": contact.load / contact.viscosity,
         }
         return of[abscissa]

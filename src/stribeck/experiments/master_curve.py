@@ -341,7 +341,7 @@ def _factor(over: str, data: Measurements, contact: Contact) -> float:
     """Return what the abscissa of the data of a contact becomes another by."""
     rule = RULES[contact.groups.geometry]
     speed = rule.speed_per(data.abscissa, contact)
-    return speed * contact.viscosity if over == "speed_viscosity" else speed / rule.hersey(contact)
+    return speed * contact.viscosity if over == "speed_viscosity" else speed / rule.speed_per("hersey_number", contact)
 
 
 def _offsets(data: Measurements, points: Points, found: Agreement) -> Iterator[CurveOffset]:

@@ -114,7 +114,7 @@ class Diagram:
 
 def hersey_scale(contact: Contact) -> float:
     """Return the Hersey number at 1 m/s."""
-    return 1.0 / RULES[contact.groups.geometry].hersey(contact)
+    return 1.0 / RULES[contact.groups.geometry].speed_per("hersey_number", contact)
 
 
 def _group_per_unit(contact: Contact, name: str) -> float:

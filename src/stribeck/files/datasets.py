@@ -9,7 +9,7 @@ import csv
 import os
 import secrets
 import shutil
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -84,17 +84,21 @@ def write_netcdf(dataset: xarray.Dataset, path: PathLike, *, force: bool = False
 
 def write_csv(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:
     """Write a dataset as text: comments, one line of names with units, one line for each point."""
-    table = _table(dataset)
+    above = [f"{name}: {line}" for name, value in _about(dataset).items() for line in value.splitlines() or [""]]
+    columns = {f"{name} [{dataset[name].attrs.get('units', '1')}]": each.tolist() for name, each in _table(dataset).items()}
+    write_columns(path, above, columns, force=force)
+
+
+def write_columns(path: PathLike, above: Iterable[str], columns: Mapping[str, Sequence[Any]], *, force: bool = False) -> None:
+    """Write columns as text below lines of comments."""
     with (
         atomic_write(path, CSV_ENDINGS, force=force) as temporary,
         temporary.open("w", newline="", encoding="utf-8") as file,
     ):
-        for name, value in _about(dataset).items():
-            for line in value.splitlines() or [""]:
-                file.write(f"# {name}: {line}\n")
+        file.writelines(f"# {line}\n" for line in above)
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(f"{name} [{dataset[name].attrs.get('units', '1')}]" for name in table)
-        writer.writerows(zip(*(column.tolist() for column in table.values()), strict=True))
+        writer.writerow(columns)
+        writer.writerows(zip(*columns.values(), strict=True))
 
 
 def write_parquet(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:
