@@ -574,3 +574,67 @@ def test_the_force_tells_the_direction_where_the_speed_is_a_size_and_its_sign_do
     for other in (found[1], sizes):
         assert other.friction == pytest.approx(found[0].friction, rel=1e-6)
         assert np.abs(other.difference) == pytest.approx(np.abs(found[0].difference), rel=1e-6)
+
+
+def series_of(speed, friction):
+    return text_of(np.column_stack([np.arange(len(speed)), speed, friction]), "Time [s];Speed [mm/s];COF")
+
+
+@pytest.mark.quick
+def test_passes_differ_by_more_than_noise_where_chance_does_so_less_than_once_in_twenty_files(written, subtests):
+    """``UNLIKELY``: of 15 degrees of freedom 5 % exceed 1.67 times the variance that the file states."""
+    speeds = np.tile([1.0, 3.0, 10.0, 30.0, 100.0], 4)
+    sweeps = np.repeat([1, -1, 1, -1], 5)
+    for ratio, is_more in ((1.62, False), (1.72, True)):
+        with subtests.test(ratio=ratio):
+            shift = 0.001 * np.sqrt(ratio * 15 / 20) * sweeps
+            rows = np.column_stack([speeds, curve(speeds) + shift, np.full(20, 0.001)])
+            found = sb.bench.read(written(text_of(rows, "Speed [mm/s];COF;COF error")), sb.FitSettings(run_in="keep"))
+            assert note_of(found, "Passes at the same speed differ by") is is_more
+            assert len(found) == 5 and found.error[0] > 0
+
+
+@pytest.mark.quick
+def test_a_start_is_left_out_from_three_standard_errors_on(written, subtests):
+    """``CLEAR``: of rows that alternate by 1 %, the mean of four is known to 0.51 % beside that of 96."""
+    speed, alternating = np.repeat([10.0, 100.0], 100), 0.01 * (-1.0) ** np.arange(200)
+    for share, is_start in ((1.3, False), (1.8, True)):
+        with subtests.test(share=share):
+            start = np.where(np.arange(200) < 4, 0.01 * share, 0.0)
+            found = sb.bench.read(written(series_of(speed, curve(speed) * (1 + alternating + start))))
+            assert (found.status[:10] == 3).any() == is_start and (found.status[10:] == 0).all()
+
+
+@pytest.mark.quick
+def test_the_speed_of_a_point_is_the_mean_of_its_rows(written):
+    speed = np.concatenate([np.full(60, 10.0), np.full(60, 100.0), np.full(180, 10.08), np.full(60, 100.0)])
+    found = sb.bench.read(written(series_of(speed, curve(speed))))
+    assert found.speed == pytest.approx([0.01 * 1.008**0.75, 0.1], rel=1e-4)
+
+
+@pytest.mark.quick
+def test_a_drive_may_wander_by_two_per_cent_within_a_step(written, subtests):
+    """``LARGEST_NOISE``."""
+    for ratio, points in ((1.015, 2), (1.025, 3)):
+        with subtests.test(ratio=ratio):
+            speed = np.concatenate([np.full(60, 10.0), np.full(60, 10.0 * ratio), np.full(120, 100.0)])
+            assert len(sb.bench.read(written(series_of(speed, curve(speed))))) == points
+
+
+@pytest.mark.quick
+def test_a_force_zero_beyond_the_friction_leaves_repeats_readable(written):
+    """One way the measured friction is below zero then, of which no logarithm tells run-in."""
+    rows = stepped(np.random.default_rng(5), 40, speeds=np.tile([10.0, 100.0, 300.0], 3), zero=0.4, drift=0, amplitude=0.005)
+    found = sb.bench.read(written(text_of(rows)))
+    assert (found.difference > 2 * found.friction)[1:].all()
+    assert_holds(found)
+
+
+@pytest.mark.quick
+def test_strokes_of_one_speed_are_those_of_their_load(written):
+    way = np.tile(np.repeat([1.0, -1.0], 20), 20)
+    load = np.repeat([2.0, 6.0], 400)
+    force = way * load * np.where(load == 2, 0.3, 0.2) * (1 + 0.01 * np.random.default_rng(1).normal(size=800))
+    found = sb.bench.read(written(text_of(np.column_stack([np.arange(800), 10 * way, load, force]))))
+    assert found.inputs == ({"load": 2.0}, {"load": 6.0})
+    assert found.friction == pytest.approx([0.3, 0.2], rel=0.01) and found.rows.tolist() == [400, 400]

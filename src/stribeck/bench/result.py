@@ -186,10 +186,7 @@ class BenchCurve(Exported, Told, ByValue):
         if np.isfinite(self.half_width).any():
             columns["error"] = cells(self.error, 4)
         for name in sorted(given):
-            header = HEADERS.get(name, name)
-            if name == "load" and "load_per_length" in given:
-                header = "measured force [N]"
-            columns[header] = cells(np.array([self.inputs[k].get(name, math.nan) for k in self.curve]))
+            columns[HEADERS.get(name, name)] = cells(np.array([self.inputs[k].get(name, math.nan) for k in self.curve]))
         columns["rows"], columns["independent rows"] = list(map(str, self.rows)), cells(self.independent, 4)
         for name, values in (("direction difference", self.difference), ("direction difference SE", self.difference_error)):
             if np.isfinite(values).any():

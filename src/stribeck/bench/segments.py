@@ -85,8 +85,6 @@ def _steps(y: Array) -> list[tuple[int, int, bool]]:
     for k, (first, end) in enumerate(pieces):
         if joined and steady[k] and joined[-1][2] and apart[k - 1] < LARGEST_NOISE:
             joined[-1] = (joined[-1][0], end, True)
-        elif joined and not steady[k] and not joined[-1][2]:
-            joined[-1] = (joined[-1][0], end, False)
         else:
             joined.append((first, end, steady[k]))
     return joined

@@ -1,8 +1,8 @@
 """The start of a step, left out where friction has not settled.
 
-The rule is that of simulations (MSER-5 [White 1997]): of all places in the first half, the cut is where the standard error of
-the mean of what remains is smallest, by means of five rows.  The cut counts only if the mean before it differs from the mean
-after it by more than three standard errors, which allow for the memory of the noise: else what looks like a start is noise.
+The rule is that of simulations (MSER [White 1997]): of all places in the first half, the cut is where the standard error of
+the mean of what remains is smallest.  The cut counts only if the mean before it differs from the mean after it by more than
+three standard errors, which allow for the memory of the noise: else what looks like a start is noise.
 """
 
 from __future__ import annotations
@@ -18,8 +18,6 @@ from stribeck.fits.table.repeats import CLEAR
 
 __all__ = ["common_memory", "start_of"]
 
-ROWS_OF_A_MEAN = 5  # Rows of a mean, as MSER-5 has it
-
 
 def common_memory(series: Sequence[Array]) -> tuple[float, float]:
     """Return variance and correlation of neighbours of the second halves of series, over their means."""
@@ -32,12 +30,10 @@ def start_of(series: Array, common: tuple[float, float]) -> tuple[int, float]:
     rows = len(series)
     if rows < 2 * FEWEST_BLOCKS:
         return 0, 0.0
-    of_mean = ROWS_OF_A_MEAN if rows >= 2 * FEWEST_BLOCKS * ROWS_OF_A_MEAN else 1
-    means = series[: rows // of_mean * of_mean].reshape(-1, of_mean).mean(axis=1)
-    left = np.arange(len(means), 0, -1)
-    sums, squares = (np.cumsum(each[::-1])[::-1] for each in (means, (means - means.mean()) ** 2))
-    deviations = squares - left * (sums / left - means.mean()) ** 2
-    cut = of_mean * int(np.argmin((deviations / left**2)[: len(means) // 2 + 1]))
+    left = np.arange(rows, 0, -1)
+    sums, squares = (np.cumsum(each[::-1])[::-1] for each in (series, (series - series.mean()) ** 2))
+    deviations = squares - left * (sums / left - series.mean()) ** 2
+    cut = int(np.argmin((deviations / left**2)[: rows // 2 + 1]))
     if not cut:
         return 0, 0.0
     rest = float(series[cut:].mean())
