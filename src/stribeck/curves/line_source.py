@@ -18,7 +18,6 @@ from stribeck.curves.source import Coefficients, Parts, Source
 from stribeck.equations.observables import ROW, Observables, drag_parts
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.dual import Dual, slope_of, value_of
-from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES
@@ -105,7 +104,7 @@ class CurvePoint(Solution):
     @cached_property
     def _solved(self) -> Solution:
         path, s = self._place
-        found = solution_of(_solved_at(path, s, self.rtol), self.contact, self.rtol)
+        found = solution_of(path.problem.point_at(path, s, self.rtol), self.contact, self.rtol)
         assert found is not None
         return found
 
@@ -130,13 +129,6 @@ class CurvePoint(Solution):
     nodal_pressures = property(lambda self: self._solved.nodal_pressures)
     newton_steps = property(lambda self: self._solved.newton_steps)
     origin = property(lambda self: self._solved.origin)
-
-
-@one_blas_thread
-def _solved_at(path: Any, s: float, rtol: float | None = None) -> RefinedState:
-    """Return the verified state at a coordinate of a path."""
-    found: RefinedState = path.problem.point_at(path, s, rtol)
-    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -233,7 +225,7 @@ class LineSource(PathSource):
         """Return rows at places; with a tolerance, a state is solved where no error is known within it."""
         found, errors = self.path.at(s)
         for i in [] if rtol is None else np.nonzero(~self._within(found, errors, rtol))[0].tolist():
-            point = _solved_at(self.path, float(s[i]), rtol)
+            point = self.path.problem.point_at(self.path, float(s[i]), rtol)
             if point.values is not None and point.estimate is not None and point.outcome.ok:
                 found[i] = *point.values.array(), point.values.minimum_position
                 errors[i, : len(point.estimate.relative)] = point.estimate.relative
@@ -297,12 +289,12 @@ class LineSource(PathSource):
         """Return the state at a place, as the solver has it."""
         known = next((each.state for each in self.path.expansions if each.coordinate == s), None)
         if known is None and (s, self.rtol) not in self._states:
-            self._states[s, self.rtol] = _solved_at(self.path, s)
+            self._states[s, self.rtol] = self.path.problem.point_at(self.path, s)
         return self._states[s, self.rtol] if known is None else known
 
     def solved(self, s: float, rtol: float) -> Solution:
         """Return the solution at a place."""
-        point = self._states[s, rtol] = _solved_at(self.path, s, rtol)
+        point = self._states[s, rtol] = self.path.problem.point_at(self.path, s, rtol)
         if point.state is None or point.values is None:
             raise SolveError(point.outcome, None, f"{describe(self.coordinate.groups_at(s))}: {point.outcome.value}")
         found = solution_of(point, self.coordinate.contact_at(s), rtol)

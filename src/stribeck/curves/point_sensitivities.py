@@ -14,6 +14,7 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import log_cut_offs
 from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.parts import part_names
 from stribeck.contacts.with_parts import admissible_steps, model_at, models_at_both_sides
@@ -29,11 +30,7 @@ from stribeck.solver.point.state import PointObservables, with_area
 
 __all__ = ["ball_derivatives"]
 
-SMALL = 1e-4
-"""Step of the logarithms in finite differences of closed forms."""
-
-WIDTH_EXPONENTS = {"radius": 1 / 3, "modulus": -1 / 3, "load": 1 / 3}
-"""Exponents of the inputs in the Hertz radius, the unit of a wetted radius."""
+SMALL = 1e-4  # Step of the logarithms in finite differences of closed forms
 
 
 def ball_derivatives(
@@ -79,8 +76,8 @@ def ball_derivatives(
     direct["slide_to_roll"] = direct.get("slide_to_roll", 0.0) + slope("_slide_to_roll")
     if values._wetted_radius is not None:
         direct["wetted_radius"] = by_edge = slope("_wetted_radius")
-        for name, exponent in WIDTH_EXPONENTS.items():
-            direct[name] = direct.get(name, 0.0) - exponent * by_edge
+        for name, exponent in RULES["point"].exponents["wetted_radius"].items():
+            direct[name] = direct.get(name, 0.0) + exponent * by_edge
     return solution, by_groups, by_model, direct
 
 

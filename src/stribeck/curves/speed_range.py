@@ -32,36 +32,24 @@ from stribeck.solver.solve_error import SolveError, describe
 
 __all__ = ["SPEEDS", "automatic_speed_range", "fastest", "grown", "no_range", "part_of_contact"]
 
-SPEEDS = (1e-12, 1e12)
-"""Smallest and largest speed group of a curve that chooses its own range."""
+SPEEDS = (1e-12, 1e12)  # Smallest and largest speed group of a curve that chooses its own range
+SMOOTH = (1e-9, 10.0)  # Speed groups of curves of smooth surfaces, which have no plateau
 
-SMOOTH = (1e-9, 10.0)
-"""Speed groups of curves of smooth surfaces, which have no plateau."""
-
-PLATEAU = 1e-3
-"""Change of the fluid's share of the load over a decade of speed below which it is a plateau."""
-
+PLATEAU = 1e-3  # Change of the fluid's share of the load over a decade of speed below which it is a plateau
+# Part of the friction from asperities at which the branch is hydrodynamic; on the plateau ten times as much may be the fluid's
 BRANCH = 1e-2
-"""Part of the friction from asperities at which the branch is hydrodynamic; ten times as much may come from the fluid on the
-plateau."""
 
-BELOW, BEYOND = 10.0, 30.0
-"""Factors by which the curve extends below the first state on the plateau, and beyond the start of the branch."""
+BELOW, BEYOND = 10.0, 30.0  # Factors by which the curve extends below the first state on the plateau, and beyond the branch
 
 BALL_SPEEDS = (1e-8, 1e3)  # Speed groups between which a curve of a ball chooses its own range
 BALL_RTOL = 1e-3  # Tolerance of the states on which that is found
 
-LONGEST_EXTENSION = 2
-"""Most extensions of a curve whose fast end is not hydrodynamic yet."""
+LONGEST_EXTENSION = 2  # Most extensions of a curve whose fast end is not hydrodynamic yet
 
-COARSE = 2e-4
-"""Tolerance of a curve that is followed for its ends alone."""
+COARSE = 2e-4  # Tolerance of a curve that is followed for its ends alone
+LOCATED = 1e-6  # Tolerance of the start of the plateau, in the logarithm of the speed
 
-LOCATED = 1e-6
-"""Tolerance of the start of the plateau, in the logarithm of the speed."""
-
-REACH, PLACES = 8.0, 161
-"""Half-widths within which asperities count, of a contact that the film widens, and number of places there."""
+REACH, PLACES = 8.0, 161  # Half-widths within which asperities count, of a contact that the film widens, and places there
 
 
 def fastest(groups: Groups, boundary_friction: float, beta: float) -> float:

@@ -15,7 +15,7 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 
-__all__ = ["Agreement", "Departure", "Points", "agreement", "departure", "overlapping", "power_law"]
+__all__ = ["Agreement", "Points", "agreement", "departure", "overlapping", "power_law"]
 
 SIZES = range(4, 13)  # Numbers of coefficients that the spline may have
 
@@ -74,19 +74,7 @@ class Agreement:
     scatter: float  # Scatter about the common curve, as a part of friction
     noise: float  # Of each curve by itself, over the stated errors where there are any, else as a part of friction
     variance: float  # Squared size of the noise over that of the points
-    freedom: float  # Degrees of freedom of the noise
     probability: float  # With which chance makes curves that are one differ as much
-
-
-@dataclass(frozen=True)
-class Departure:
-    """By how much a curve lies apart from the others."""
-
-    offset: float  # Mean of ln(friction) less that of the others
-    offset_error: float
-    shift: float  # Logarithm of the factor on its abscissa that brings it onto them; nan where none does
-    shift_error: float
-    is_shift: bool  # Whether the shift explains the departure better than the offset
 
 
 def knots_of(x: Array, size: int) -> Array:
@@ -150,7 +138,6 @@ def agreement(points: Points) -> Agreement:
         scatter=math.sqrt(float(squares.sum()) / left),
         noise=math.sqrt(own_variance),
         variance=variance,
-        freedom=freedom,
         probability=float(f_test.sf(statistic, extra, freedom)),
     )
 
@@ -211,8 +198,12 @@ def overlapping(points: Points) -> Array:
     return found
 
 
-def departure(points: Points, curve: int, found: Agreement) -> Departure | None:
-    """Return how far a curve lies from the others; None where fewer than three of its rows lie beside them."""
+def departure(points: Points, curve: int, found: Agreement) -> tuple[float, float, float, float, bool] | None:
+    """Return how far a curve lies from the others; None where fewer than three of its rows lie beside them.
+
+    That is the mean of ln(friction) less that of the others, its error, the logarithm of the factor on its abscissa that
+    brings it onto them, nan where none does, its error, and whether it explains the departure better than the mean.
+    """
     mine = points.curve == curve
     others = points.part(~mine)
     inside = np.nonzero(mine & overlapping(points) & (points.x >= others.x.min()) & (points.x <= others.x.max()))[0]
@@ -233,7 +224,7 @@ def departure(points: Points, curve: int, found: Agreement) -> Departure | None:
     )
     at_offset = float((((d - offset) / here.error) ** 2).mean())
     shift, shift_error, at_shift = _shift(points.part(np.nonzero(mine)[0]), curve_of_others, knots, found.variance, variance)
-    return Departure(offset, error, shift, shift_error, at_shift < at_offset)
+    return offset, error, shift, shift_error, at_shift < at_offset
 
 
 def _shift(mine: Points, others: Least, knots: Array, variance: float, of_others: float) -> tuple[float, float, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -275,8 +275,8 @@ def _usable(data: Measurements) -> tuple[Measurements, list[str]]:
     left_out = ", ".join(name for i, name in enumerate(data.curves) if i not in kept)
     rows = np.isin(data.curve, kept)
     new = {old: i for i, old in enumerate(kept.tolist())}
-    return Measurements(
-        abscissa=data.abscissa,
+    return replace(
+        data,
         values=data.values[rows],
         friction=data.friction[rows],
         error=None if data.error is None else data.error[rows],
@@ -284,8 +284,8 @@ def _usable(data: Measurements) -> tuple[Measurements, list[str]]:
         curves=tuple(data.curves[i] for i in kept),
         inputs=tuple(data.inputs[i] for i in kept),
         rows=data.rows[rows],
-        path=data.path,
-        taken=data.taken,
+        notes=(),
+        run_in=(),
         files=tuple(data.files[i] for i in kept) if data.files else (),
     ), [f"Curves with fewer than {FEWEST_ROWS} rows left out: {left_out}."]
 
@@ -348,9 +348,8 @@ def _offsets(data: Measurements, points: Points, found: Agreement) -> Iterator[C
     for curve, name in enumerate(data.curves):
         each = departure(points, curve, found)
         if each is not None:
-            yield CurveOffset(
-                name, math.expm1(each.offset), each.offset_error, math.exp(each.shift), each.shift_error, each.is_shift
-            )
+            offset, error, shift, shift_error, is_shift = each
+            yield CurveOffset(name, math.expm1(offset), error, math.exp(shift), shift_error, is_shift)
 
 
 def _powers(contacts: list[Contact], points: Points, found: Agreement) -> Iterator[PowerLaw]:

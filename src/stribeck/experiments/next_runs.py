@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 import numpy as np
@@ -161,34 +161,37 @@ def next_runs(
     noise = _noise(fit)
     information = _information(fit)
     places = _places(fit, speeds, loads, viscosities)
-    rows: list[tuple[str, Contact, Array, float, float]] = []
+    rows: list[tuple[str, Contact, Array, float]] = []
     for i, (curve, contact) in enumerate(places):
         if on_step is not None:
             on_step(i + 1, len(places))
         made = _row(fit, curve, contact)
         if made is not None:
-            rows.append((curve, contact, *made, _price(fit, contact, prices)))
+            rows.append((curve, contact, *made))
     if not rows:
         raise InputError("none of the states to be measured can be solved; give other speeds and loads.")
-    known = [(each.load, each.viscosity) for each in fit.contacts]
+    set_loads, set_fluids = ({getattr(each, name) for each in fit.contacts} for name in ("load", "viscosity"))
+    known: set[tuple[float, float]] = set()  # Where runs are chosen: the next one there needs no other load or fluid
+
+    def price(contact: Contact) -> float:
+        if (contact.load, contact.viscosity) in known:
+            return prices["point"]
+        other_load, other_fluid = contact.load not in set_loads, contact.viscosity not in set_fluids
+        return prices["point"] + prices["load"] * other_load + prices["viscosity"] * other_fluid
+
     covariance = np.asarray(np.linalg.inv(information), dtype=np.float64)
     before = _errors(fit, covariance)
-    scanned = tuple(_run(each, covariance, noise, before) for each in rows)
+    scanned = tuple(_run(each, price(each[1]), _gain(each[2], covariance, noise), before) for each in rows)
     chosen = []
     for _ in range(count):
-        gains = [_gain(j, covariance, noise) / price for _, _, j, _, price in rows]
+        gains = [_gain(j, covariance, noise) / price(contact) for _, contact, j, _ in rows]
         best = rows[int(np.argmax(gains))]
         gain = _gain(best[2], covariance, noise)
         shift = covariance @ best[2]
         covariance = covariance - np.outer(shift, shift) / (noise**2 + best[2] @ shift)
-        run = _run(best, covariance, noise, _errors(fit, covariance))
-        chosen.append(replace(run, gain=gain))
-        if (run.load, run.viscosity) not in known:  # the next run there needs no other load or fluid
-            known.append((run.load, run.viscosity))
-            rows = [
-                (c, k, j, f, prices["point"] if (k.load, k.viscosity) == (run.load, run.viscosity) else p)
-                for c, k, j, f, p in rows
-            ]
+        run = _run(best, price(best[1]), gain, _errors(fit, covariance))
+        chosen.append(run)
+        known.add((run.load, run.viscosity))
     dimension = fit.contacts[0].INPUTS.quantities["load"].dimension
     return Plan(tuple(chosen), before, noise, scanned, dimension)
 
@@ -219,9 +222,11 @@ def _places(
         name: None if values is None else [table.quantities[name].checked(value) for value in values]
         for name, values in (("speed", speeds), ("load", loads), ("viscosity", viscosities))
     }
-    low, high = _speed_range(fit)
     tried = given["speed"]
     if tried is None:
+        factors = np.array([RULES[each.groups.geometry].speed_per(fit.data.abscissa, each) for each in fit.contacts])
+        measured = fit.data.values * factors[fit.data.curve]
+        low, high = float(measured.min()), float(measured.max())
         tried = np.geomspace(low / SPEED_MARGIN, high * SPEED_MARGIN, CANDIDATE_SPEEDS).tolist()
     if any(not values for values in given.values() if values is not None) or min(tried) <= 0:
         raise InputError("speeds, loads and viscosities must hold at least one value, and speeds be positive.")
@@ -233,12 +238,6 @@ def _places(
             for viscosity in given["viscosity"] or [contact.viscosity]:
                 states.setdefault((load, viscosity), (name, contact.replace(load=load, viscosity=viscosity)))
     return [(name, contact.replace(speed=speed)) for name, contact in states.values() for speed in tried]
-
-
-def _speed_range(fit: Fit) -> tuple[float, float]:
-    factors = np.array([RULES[each.groups.geometry].speed_per(fit.data.abscissa, each) for each in fit.contacts])
-    speeds = fit.data.values * factors[fit.data.curve]
-    return float(speeds.min()), float(speeds.max())
 
 
 def _row(fit: Fit, curve: str, contact: Contact) -> tuple[Array, float] | None:
@@ -262,15 +261,6 @@ def _percents(errors: Mapping[str, float]) -> str:
     return ", ".join(f"{name} {format_percent(error)}" for name, error in errors.items())
 
 
-def _price(fit: Fit, contact: Contact, prices: Mapping[str, float]) -> float:
-    loads, fluids = ({getattr(each, name) for each in fit.contacts} for name in ("load", "viscosity"))
-    return (
-        prices["point"]
-        + prices["load"] * (contact.load not in loads)
-        + prices["viscosity"] * (contact.viscosity not in fluids)
-    )
-
-
 def _gain(j: Array, covariance: Array, noise: float) -> float:
     return 0.5 * math.log1p(float(j @ covariance @ j) / noise**2)
 
@@ -279,8 +269,7 @@ def _errors(fit: Fit, covariance: Array) -> dict[str, float]:
     return {each.label: math.sqrt(max(0.0, float(v))) for each, v in zip(fit.inputs, np.diag(covariance), strict=True)}
 
 
-def _run(row: tuple[str, Contact, Array, float, float], covariance: Array, noise: float, errors: dict[str, float]) -> NextRun:
-    curve, contact, j, friction, price = row
-    gain = _gain(j, covariance, noise)
+def _run(row: tuple[str, Contact, Array, float], price: float, gain: float, errors: dict[str, float]) -> NextRun:
+    curve, contact, _, friction = row
     place = contact.speed, contact.load, contact.viscosity
     return NextRun(curve, *place, friction, gain, price, errors, contact.INPUTS.quantities["load"].unit)

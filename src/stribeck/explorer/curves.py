@@ -135,13 +135,12 @@ def transition_marks(contact: Contact, definition: Definition) -> Marks:
         return {}
     groups, unit = contact.groups, _group_per_unit(contact, "speed")
     motion = RULES[groups.geometry].motion(contact)
-    found = transition_speeds(groups, contact.boundary_friction, contact.beta, definition, **motion)
-    speeds = {name: float(getattr(found, name)[0]) / unit for name in SHOWN}
-    errors = dict(zip(("boundary", "hydrodynamic", "minimum"), found.error[:, 0].tolist(), strict=True))
+    speeds, errors = transition_speeds(groups, contact.boundary_friction, contact.beta, definition, motion)
+    rows = {"boundary": 0, "minimum": 2, "hydrodynamic": 1}
     return {
-        name: Landmark(SHOWN[name], speed, math.nan, error=errors[name], unit="m/s")
-        for name, speed in speeds.items()
-        if 0 < speed < math.inf
+        name: Landmark(SHOWN[name], speed, math.nan, error=float(errors[row, 0]), unit="m/s")
+        for name, row in rows.items()
+        if 0 < (speed := float(speeds[row, 0]) / unit) < math.inf
     }
 
 
@@ -267,6 +266,5 @@ def diagram_from_atlas(contact: Contact, definition: Definition, speeds: tuple[f
     lowest, highest = row.speeds(rows)
     ends = max(speeds[0] * unit, lowest), min(speeds[1] * unit, highest)
     motion = RULES[groups.geometry].motion(contact)
-    found = transition_speeds(rows, contact.boundary_friction, contact.beta, definition, ends, narrowings=1, **motion)
-    lines = np.stack([found.boundary, found.hydrodynamic, found.minimum]) / unit
-    return Diagram(roughness, np.where(inside == h, lines, math.nan))
+    found, _ = transition_speeds(rows, contact.boundary_friction, contact.beta, definition, motion, ends, narrowings=1)
+    return Diagram(roughness, np.where(inside == h, found / unit, math.nan))

@@ -74,18 +74,16 @@ class Scan:
 
     def along(self, name: Over) -> Margin:
         """Return the changes along one input."""
-        value = float(getattr(self.contact, name))
-        found = self._from_zero(name) if value == 0 else self._both_ways(name, value)
+        value, contact = float(getattr(self.contact, name)), self.contact
+        if value == 0:
+            found = self._from_zero(name)
+        elif contact.speed == 0 or contact.friction_of_asperities.is_frictionless or contact.roughness == 0:
+            found = Margin(name, None, None, (value, value))  # these hold the regime, whatever else changes
+        else:
+            (less, lowest), (more, highest) = self._outwards(contact, name, limits(contact, name))
+            found = Margin(name, less, more, (lowest, highest))
         self.done += 1
         return found
-
-    def _both_ways(self, name: Over, value: float) -> Margin:
-        # Zero speed, zero roughness and zero dry friction hold the regime, whatever else changes.
-        held = self.contact.speed == 0 or self.contact.friction_of_asperities.is_frictionless or self.contact.roughness == 0
-        if held:
-            return Margin(name, None, None, (value, value))
-        (less, lowest), (more, highest) = self._outwards(self.contact, name, limits(self.contact, name))
-        return Margin(name, less, more, (lowest, highest))
 
     def _from_zero(self, name: Over) -> Margin:
         """Return the change with more of an input that is zero."""

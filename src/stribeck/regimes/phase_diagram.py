@@ -133,7 +133,11 @@ def phase_diagram(
 
             _fill_row(diagram, (i, j), check_method(method), report)
         if merging:
-            diagram.merging = _merging_line(diagram)
+            diagram.merging = np.full(len(diagram.axes["load"]), np.nan)
+            given = diagram.boundary_friction, diagram.beta, diagram.definition
+            for i in range(len(diagram.merging)):
+                with suppress(SolveError):
+                    diagram.merging[i] = roughness_without_minimum(diagram.problem(i, 0)[0], *given)
     except KeyboardInterrupt:
         diagram.outcome = Outcome.INTERRUPTED
     return diagram_dataset(diagram)
@@ -238,13 +242,3 @@ def _filled(speeds: Array, diagram: Diagram, row: tuple[int, int], method: Metho
         for pair in pairwise(ends)
     ]
     return np.concatenate([*pieces, ends[-1:]])
-
-
-def _merging_line(diagram: Diagram) -> Array:
-    """Return the roughness at which each load loses the minimum, on the axis of the diagram."""
-    line = np.full(len(diagram.axes["load"]), np.nan)
-    for i in range(len(line)):
-        problem, _, _ = diagram.problem(i, 0)
-        with suppress(SolveError):
-            line[i] = roughness_without_minimum(problem, diagram.boundary_friction, diagram.beta, diagram.definition)
-    return line

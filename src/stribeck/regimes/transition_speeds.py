@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -14,11 +14,9 @@ from stribeck.atlas.tables import table_for
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
 from stribeck.numerics.events import rising_zeros
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.keywords import answers_typos
 
 POINTS_PER_DECADE = 5  # Of speed, on which passages are seen before each is narrowed
 
@@ -27,31 +25,22 @@ MAX_NARROWINGS = 6  # Rounds of that
 NARROW_ENOUGH = 0.2  # Part of the table's error below which the ends of a passage are no longer moved together
 
 
-@dataclass(frozen=True, eq=False)
-class TransitionSpeeds:
-    """Speed groups at which the regimes of many contacts pass into each other."""
-
-    # Where the fluid begins to carry more than 5 % of the load, and asperities cause no more than 10 % of the friction: zero
-    # or infinite where they do or do not at all speeds.
-    boundary: Array
-    hydrodynamic: Array
-    minimum: Array  # Where friction is at its minimum, nan where that is not between the speeds asked for
-    error: Array  # Errors of the logarithms of the three, from the stated errors of the table, shape (3, n)
-
-
-@answers_typos
 @one_blas_thread
 def transition_speeds(
     groups: Groups,
-    boundary_friction: float = 1.0,
-    beta: float = 1.0,
-    definition: Definition = "balanced",
+    boundary_friction: float,
+    beta: float,
+    definition: Definition,
+    motion: Mapping[str, Any],
     speeds: tuple[float, float] | None = None,
     narrowings: int = MAX_NARROWINGS,
-    slide_to_roll: float = PURE_SLIDING,
-    wetted_radius: float = math.inf,
-) -> TransitionSpeeds:
-    """Return where the regimes of many contacts of one load pass into each other, all located at once on the atlas."""
+) -> tuple[Array, Array]:
+    """Return the speed groups at which the regimes of many contacts of one load pass into each other, off the atlas.
+
+    They are where the fluid begins to carry more than 5 % of the load, and asperities cause no more than 10 % of the friction,
+    zero or infinite where they do or do not at all speeds; and where friction is at its minimum, nan where that is not between
+    the speeds.  With them come the errors of their logarithms, from the stated errors of the table, both of shape (3, n).
+    """
     row = table_for(groups)
     roughness = np.atleast_1d(np.asarray(groups.roughness, dtype=float))
     speeds = row.speeds(groups) if speeds is None else speeds
@@ -59,7 +48,6 @@ def transition_speeds(
     grid = np.log(np.geomspace(*speeds, count))
 
     bound = HYDRODYNAMIC_CONTACT_SHARE / (1 - HYDRODYNAMIC_CONTACT_SHARE)
-    motion = {"slide_to_roll": slide_to_roll, "wetted_radius": wetted_radius}
     rubbing = boundary_friction * float(RULES[groups.geometry].sliding_factor(groups, motion))
 
     def signs(s: Array, h: Array) -> Array:
@@ -79,7 +67,8 @@ def transition_speeds(
     found, error = _passages(signs, grid, roughness, narrowings, row.error)
     with np.errstate(over="ignore"):
         speed = np.exp(found)
-    return TransitionSpeeds(speed[0], speed[1], np.where(np.isfinite(found[2]), speed[2], np.nan), error)
+    speed[2, ~np.isfinite(found[2])] = np.nan
+    return speed, error
 
 
 def _passages(

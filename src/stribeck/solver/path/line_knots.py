@@ -16,6 +16,7 @@ from stribeck.equations.observables import DRAG_ROWS, ROW, minimum_of
 from stribeck.equations.sensitivity import derivatives_along
 from stribeck.equations.state import State
 from stribeck.numerics.settings import EPSILON, LOG_STEP
+from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS
@@ -88,6 +89,7 @@ class LineKnots(LineStates):
         assert state is not None
         return state
 
+    @one_blas_thread
     def point_at(self, path: HermitePath, s: float, rtol: float | None = None) -> RefinedState:
         """Return the verified state at a coordinate of a path; without ``rtol`` the tolerance is that of the path."""
         groups, tolerance = self.groups_at(s), self.tolerance if rtol is None else rtol

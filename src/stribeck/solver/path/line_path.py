@@ -21,6 +21,7 @@ from stribeck.fluids.rheology.viscosity import Barus, Constant, DowsonHigginson,
 from stribeck.numerics.newton import Root
 from stribeck.numerics.series import beyond, radius
 from stribeck.numerics.settings import COEFFICIENT_NOISE, MAX_DEGREE, NEGLIGIBLE, SAFETY
+from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import NAMES
 from stribeck.solver.at_rest import shift_along, with_positive_gap
@@ -163,6 +164,7 @@ class LineProblem(LineStates):
                 return found
         return self._guess(s, self.groups_at(s), ends)[0]
 
+    @one_blas_thread
     def point_at(self, path: SolvedPath, s: float, rtol: float | None = None) -> RefinedState:
         """Return the verified state at a coordinate; without ``rtol`` the tolerance is that of the path."""
         rtol = self.tolerance if rtol is None else rtol
