@@ -14,7 +14,7 @@ from stribeck.bench.points import Point, points_of, run_in_of
 from stribeck.bench.raw import Raw, read_raw
 from stribeck.bench.result import BenchCurve
 from stribeck.bench.segments import directions
-from stribeck.cases.bench_settings import with_options
+from stribeck.cases.bench_settings import with_bench_keys
 from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.cases.reading import load_rig
@@ -117,7 +117,7 @@ def read(
         "arm": arm,
         "track_radius": track_radius,
     }
-    settings = with_options(_settings(settings), {key: each for key, each in options.items() if each is not None})
+    settings = with_bench_keys(_settings(settings), {key: each for key, each in options.items() if each is not None})
     several = [runs] if isinstance(runs, str | os.PathLike) else list(runs)
     if not several:
         raise InputError("runs is empty; give the files of a rig.")

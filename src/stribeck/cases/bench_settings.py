@@ -12,8 +12,6 @@ from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError, checked_kind, checked_word, show
 
-__all__ = ["with_bench_table", "with_options"]
-
 # What both tables say of data files, under the same name.
 SHARED = ("columns", "units", "header_row", "sheet", "track_radius", "arm", "run_in", "files")
 
@@ -22,18 +20,8 @@ PER_DECADE = Input(
 )
 
 
-def with_bench_table(settings: FitSettings, tables: Mapping[str, Any]) -> FitSettings:
-    """Return what ``[fit]`` says of data files, with what ``[bench]`` among the tables of a file has in its place."""
-    return _with(settings, {"bench": tables.get("bench", {})}, "bench")
-
-
-def with_options(settings: FitSettings, options: Mapping[str, Any]) -> FitSettings:
-    """Return the settings with the options of a call in their place, which have the names of the table's keys."""
-    return _with(settings, options, "")
-
-
-def _with(settings: FitSettings, given: Mapping[str, Any], table: str) -> FitSettings:
-    """Return the settings with the keys of a table, or of none, in their place."""
+def with_bench_keys(settings: FitSettings, given: Mapping[str, Any], table: str = "") -> FitSettings:
+    """Return what ``[fit]`` says of data files, with the keys of ``[bench]`` that are given, or its table, in their place."""
     of_fit, problems = keys_of_fit(settings.geometry, "bench"), list[str]()
     keys: Keys = {
         **{name: of_fit[name] for name in SHARED},
@@ -42,7 +30,7 @@ def _with(settings: FitSettings, given: Mapping[str, Any], table: str) -> FitSet
         "fluid": Key(lambda name, value: _liquid(value)),
         "temperature": AS_GIVEN,
     }
-    read = read_tables(given, {table: keys}, problems)
+    read = read_tables({table: given.get(table, {})} if table else given, {table: keys}, problems)
     if problems:
         raise InputError("\n".join(problems))
     found = read.get(table, {}) if table else read

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, get_args
 
-from stribeck.cases.bench_settings import with_bench_table
+from stribeck.cases.bench_settings import with_bench_keys
 from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL, Axis, Case, CurveSettings, curve_range
 from stribeck.cases.facts import FACTS, fact_values
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
@@ -68,7 +68,7 @@ def load_rig(path: str | os.PathLike[str]) -> FitSettings:
     if set(tables) != {"bench"}:
         return check_case(tables, path).bench
     try:
-        return with_bench_table(FitSettings(), tables)
+        return with_bench_keys(FitSettings(), tables, "bench")
     except InputError as problem:
         _refuse(path, str(problem).splitlines())
         raise
@@ -90,7 +90,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     fit = bench = FitSettings(geometry=geometry)
     with noted(problems):
         fit = check_fit_table(table.pop("fit", {}), geometry, tables.get("fluid"))
-        bench = with_bench_table(fit, tables)
+        bench = with_bench_keys(fit, tables, "bench")
         table.pop("bench", None)
     found = _read_contact(table, problems, inputs, elsewhere)
     checked = read_tables(table, _keys_of_case(geometry), problems)

@@ -275,21 +275,7 @@ class Contact(Parts):
 
     @classmethod
     def from_groups(cls, groups: Groups, **kept: Any) -> Self:
-        r"""Return the contact whose :attr:`groups` are ``groups``.
-
-        .. math::
-
-            F_N = \pi \beta^2 R E^* \bar F_N, \quad
-            U = \frac{4}{3\pi^2} \frac{\lambda F_N^2}{\eta R E^*}, \quad
-            h_\mathrm{rms} = 4 \alpha \beta^2 R \bar h_\mathrm{rms}
-
-        of a cylinder, and of a ball
-
-        .. math::
-
-            F_N = \frac{\pi^3}{6} \beta^3 R^2 E^* \bar F_N, \quad
-            U = \frac{\lambda E^* R}{3\pi \eta} \left(\frac aR\right)^4, \quad
-            h_\mathrm{rms} = \frac{\pi^2}{4} \alpha \beta^2 R \bar h_\mathrm{rms}
+        """Return the contact whose :attr:`groups` are ``groups``; load, speed and roughness follow from their definitions.
 
         Parameters
         ----------
@@ -507,8 +493,6 @@ def _dry(profile: Any, load: float, modulus: float) -> DryContact:
 
 PACKAGE_OF = {kind.table: f"sb.{kind.package.split('.')[1]}" for kind in KINDS.values()}  # By table of a case
 
-LAW_PARTS = ("fluid", "flow_factors", "solid", "profile", "asperity_friction")  # Parts that are laws, in outputs
-
 IN_PLACE_OF = {"profile": "radius", "asperity_friction": "boundary_friction"}  # Part -> input in whose place it stands
 
 
@@ -600,7 +584,7 @@ def model_words(groups: Groups, contact: Contact | None) -> str:
     for name, value in part_attributes(groups, contact).items():
         if name in inputs or (name, value) in (("cavitation", "none"), ("slide_to_roll", PURE_SLIDING)):
             continue
-        owner = next((f"{what}_" for what in LAW_PARTS if name.startswith(f"{what}_")), "")
+        owner = next((f"{what}_" for what in PACKAGE_OF if name.startswith(f"{what}_")), "")
         found[name.removeprefix(owner)] = value
     return in_words(found, contact is not None) + (" (Hertz units)" if found and contact is None else "")
 

@@ -205,12 +205,8 @@ LINE_CAVITATION_NOTE = (
 )
 
 
-def cavitation_notes(
-    contact: Contact | None, lowest_pressure: float, consequence: str = LINE_CAVITATION_NOTE
-) -> tuple[str, ...]:
+def cavitation_notes(contact: Contact, lowest_pressure: float, consequence: str = LINE_CAVITATION_NOTE) -> tuple[str, ...]:
     """Return the note on a suction of more than an atmosphere behind the contact."""
-    if contact is None:
-        return ()
     suction = -lowest_pressure * contact.hertz.pressure
     if not suction > ATMOSPHERE:
         return ()
