@@ -103,6 +103,9 @@ def converge(
         if estimate.total <= 3 * estimate.floor or SHARE * before < estimate.total <= SAFETY**2 * _noise(best):
             outcome = Outcome.ROUNDING
             break
+        # An error above the value itself that a finer mesh leaves: no state is near, such as one whose cavity has closed.
+        if min(before, estimate.total) > 1.0 and estimate.total > SHARE * before:
+            break
         if estimate.of_ends > SHARE * rtol:
             halvings += math.ceil(halvings_for(estimate.of_ends / (SHARE * rtol)))
         tail *= tolerance_factor(math.sqrt(rtol / (estimate.at_nodes + 1e-300)))
