@@ -22,16 +22,27 @@ LOGARITHM_COEFFICIENT = COUETTE + POISEUILLE  # Coefficient of lambda ln X, 16 p
 @described(
     "The integral over lambda [-].", kind="ndarray", raises="If a wetted radius lies inside the contact, at 1 or below."
 )
-def far_integral(slope: Value, wetted_radius: Value | None = None) -> Array:
+def far_integral(slope: Value, wetted_radius: Value | None = None, film: Value = 0.0) -> Array:
     r"""Return the contribution of the liquid around the contact to the friction integral, over the speed group.
 
-    .. math:: \tfrac{16}{15} \pi \ln X
+    .. math:: \tfrac{16}{15} \pi \ln X + \tfrac{8}{15} \pi \ln(1 + y) + \tfrac25 \pi \frac{y}{1 + y}, \quad y = 2 h(0)/X^2
+
+    Parameters
+    ----------
+    film : float or array_like
+        Gap in the middle h(0) [u_Hz], which counts where it is no longer thin beside the gap at X.
     """
-    if wetted_radius is None:
-        by_shear, by_pressure = log_cut_offs(1.0)
-        with np.errstate(divide="ignore"):
-            return np.asarray(COUETTE * by_shear + POISEUILLE * by_pressure - LOGARITHM_COEFFICIENT * np.log(slope))
-    radius = real_array("wetted_radius", wetted_radius)
-    if not ((radius > 1) & (radius < math.inf)).all():
-        raise InputError(f"wetted_radius = {show(wetted_radius)}; in Hertz radii it must exceed 1, the edge of the contact.")
-    return np.asarray(LOGARITHM_COEFFICIENT * np.log(radius))
+    radius: Value = math.inf
+    if wetted_radius is not None:
+        radius = real_array("wetted_radius", wetted_radius)
+        if not np.all((radius > 1) & (radius < math.inf)):
+            raise InputError(
+                f"wetted_radius = {show(wetted_radius)}; in Hertz radii it must exceed 1, the edge of the contact."
+            )
+    with np.errstate(divide="ignore"):
+        by_shear, by_pressure = log_cut_offs(np.asarray(slope, dtype=float), radius)
+    at_shear, at_pressure = (2.0 * np.asarray(film) * np.exp(-2.0 * each) for each in (by_shear, by_pressure))
+    return np.asarray(
+        COUETTE * (by_shear + 0.5 * np.log1p(at_shear))
+        + POISEUILLE * (by_pressure + 0.5 * np.log1p(at_pressure) + at_pressure / (1.0 + at_pressure))
+    )
