@@ -274,7 +274,7 @@ def test_the_laws_of_the_smooth_ball_are_within_their_stated_errors_at_every_spe
     assert slow.sum() > 10
     assert np.abs(film.minimum_gap.function(groups) / minimum - 1)[slow].max() <= film.minimum_gap.worst
     right = viscous(groups, J, 0.5)
-    assert np.abs(friction.viscous_friction_smooth(groups, 0.5) / right - 1).max() <= 1e-3
+    assert np.abs(friction.viscous_friction_smooth.function(groups, 0.5) / right - 1).max() <= 1e-3
 
 
 def test_friction_of_thick_films_is_that_of_solved_states_where_the_film_is_as_thick_as_the_gap_at_the_rim():
@@ -283,7 +283,7 @@ def test_friction_of_thick_films_is_that_of_solved_states_where_the_film_is_as_t
         groups = ball(speed, load)
         for definition in ("balanced", "published"):
             solved = sb.solve(groups, rtol=1e-4).friction(boundary_friction=0.0, beta=beta, definition=definition).total
-            found = float(friction.viscous_friction_smooth(groups, beta, definition))
+            found = float(friction.viscous_friction_smooth.function(groups, beta, definition))
             assert found == pytest.approx(solved, rel=error)
     groups, thick = ball(1e2, 0.5, 1e-3), {"boundary_friction": 1.0, "beta": 1.0}
     solved = sb.solve(groups, rtol=1e-4).friction(**thick).total

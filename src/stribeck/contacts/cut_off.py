@@ -36,7 +36,8 @@ negative. By :math:`J^\mathrm{couette}` the logarithm of the shear begins at a r
     J^\mathrm{poiseuille}(X) = J^\mathrm{poiseuille} + \tfrac25 \pi \lambda \ln X
     + \tfrac15 \pi \lambda \left[\frac{2 y}{1 + y} + \ln(1 + y)\right],
 
-which is taken for every film: exact for thick ones, the logarithms for thin ones, and never a drag along the motion.
+which is taken for every film: exact for thick ones, the logarithms for thin ones, and no drag along the motion while the
+film is thinner than the ball.
 
 Source: ours; K and K' from series in bispherical coordinates of sliding and turning spheres, as in A. J. Goldman, R. G. Cox
 and H. Brenner (1967), whose 0.9588 and -0.2526 are fits at finite gaps; M. Chaoui and F. Feuillebois (2003) have 0.95429.

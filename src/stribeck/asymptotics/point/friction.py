@@ -76,7 +76,7 @@ def smooth_integral(speed: Value) -> Value:
     uses=("speed", "load"),
     plane="smooth",
     geometry="point",
-    limits=(Limit("load", 0.0, 0.1),),
+    limits=(Limit("speed", 0.0, 1e3), Limit("load", 0.0, 0.1)),
     worst=0.025,
     source="ours",
 )
@@ -96,8 +96,8 @@ def viscous_friction_smooth(
 
     Notes
     -----
-    :func:`smooth_integral` has both limits and seven fitted coefficients.  The error is below 0.1 % while the contact is
-    narrower than a fifth of the radius, :math:`a < R/5`; the stated one is that of load 0.1 at :math:`\beta = 1`.
+    :func:`smooth_integral` has both limits and seven fitted coefficients.  The error is below 0.1 % at any speed
+    while the contact is narrow, :math:`a < R/5`; the stated one is that of load 0.1 at :math:`\beta = 1`.
     """
     return _coefficient(groups, smooth_integral(groups.speed), beta, check_definition(definition), wetted_radius)[()]
 
