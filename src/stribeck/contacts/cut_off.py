@@ -106,6 +106,13 @@ def log_cut_offs(slope: Any, wetted_radius: Any = math.inf) -> tuple[Any, Any]:
     return couette[()], poiseuille[()]
 
 
+def far_logarithms(by_shear: Any, by_pressure: Any, minus_log_start: Any, rise: Any) -> tuple[Any, Any, Any]:
+    """Return both logarithms of a film that is thick at its ends, from those of a thin one, and y of the pressure."""
+    at_shear, at_pressure = (np.exp(-2.0 * (minus_log_start + each)) for each in (by_shear, by_pressure))
+    pressure = by_pressure + rise * at_pressure / (1.0 + at_pressure) + 0.5 * np.log1p(at_pressure)
+    return by_shear + 0.5 * np.log1p(at_shear), pressure, at_pressure
+
+
 def friction_integral(
     parts: Mapping[str, Any],
     speed: Any,
@@ -123,10 +130,9 @@ def friction_integral(
     """
     by_shear, by_pressure = log_cut_offs(slope, wetted_radius)
     moves = speed > 0
-    at_shear, at_pressure = (np.exp(-2.0 * (_minus_log_cut_off(parts, speed, far) + each)) for each in (by_shear, by_pressure))
-    couette = parts["J_couette"] + far.couette * speed * (by_shear + 0.5 * np.log1p(at_shear))
-    rest = by_pressure + far.rise * at_pressure / (1.0 + at_pressure) + 0.5 * np.log1p(at_pressure)
-    found = 0.5 * slide_to_roll * couette + parts["J_poiseuille"] + far.poiseuille * speed * rest
+    by_shear, by_pressure, at_pressure = far_logarithms(by_shear, by_pressure, _minus_log_cut_off(parts, speed, far), far.rise)
+    couette = parts["J_couette"] + far.couette * speed * by_shear
+    found = 0.5 * slide_to_roll * couette + parts["J_poiseuille"] + far.poiseuille * speed * by_pressure
     if definition == "published":
         # Of a whole ball both forces differ by the contact pressure alone; a disc of liquid ends with a pressure at its rim.
         edge = far.poiseuille * speed / (1.0 + at_pressure)

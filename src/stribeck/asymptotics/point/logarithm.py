@@ -12,7 +12,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Value
-from stribeck.contacts.cut_off import COUETTE, POISEUILLE, log_cut_offs
+from stribeck.contacts.cut_off import COUETTE, FULL_FAR_FILM, POISEUILLE, far_logarithms, log_cut_offs
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.units import InputError, show
 
@@ -40,9 +40,7 @@ def far_integral(slope: Value, wetted_radius: Value | None = None, film: Value =
                 f"wetted_radius = {show(wetted_radius)}; in Hertz radii it must exceed 1, the edge of the contact."
             )
     with np.errstate(divide="ignore"):
-        by_shear, by_pressure = log_cut_offs(np.asarray(slope, dtype=float), radius)
-    at_shear, at_pressure = (2.0 * np.asarray(film) * np.exp(-2.0 * each) for each in (by_shear, by_pressure))
-    return np.asarray(
-        COUETTE * (by_shear + 0.5 * np.log1p(at_shear))
-        + POISEUILLE * (by_pressure + 0.5 * np.log1p(at_pressure) + at_pressure / (1.0 + at_pressure))
-    )
+        logarithms = log_cut_offs(np.asarray(slope, dtype=float), radius)
+        start = -0.5 * np.log(2.0 * np.asarray(film))
+    by_shear, by_pressure, _ = far_logarithms(*logarithms, start, FULL_FAR_FILM.rise)
+    return np.asarray(COUETTE * by_shear + POISEUILLE * by_pressure)
