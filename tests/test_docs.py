@@ -56,7 +56,11 @@ def test_a_python_block_runs(code, desk):
 
 @pytest.mark.parametrize("code", blocks("toml"))
 def test_a_toml_block_is_a_case_or_sweep_file(code, desk):
-    Path("case.toml").write_text(code)
+    """A block without contact is added to that of the demonstration case."""
+    contact = Path("examples/pdms_cylinder.toml").read_text().partition("[curve]")[0]
+    if "[profile]" in code:
+        contact = re.sub("^radius.*", "", contact, flags=re.MULTILINE)
+    Path("case.toml").write_text(code if "[contact]" in code or code.startswith("[bench]") else contact + code)
     if "[vary]" in code:
         assert len(sb.load_sweep("case.toml")) > 1
     elif code.startswith("[bench]"):
