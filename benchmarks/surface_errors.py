@@ -1,9 +1,9 @@
 """How often the true spectrum lies within the errors of the fit: synthetic maps and profiles of known spectra.
 
-Prints the two tables of docs/surfaces.md.  The first is for standard errors: for each parameter the share of surfaces of which
-the truth lies within one and two standard errors (68 and 95 % if these were normal), and the median relative error, where a
-roll-off was found.  The second is for the 95 % intervals of alpha and beta, of all surfaces: the share that holds the truth,
-and the median ends over the truth.
+Prints the two tables behind the shares in docs/surfaces.md.  The first is for standard errors: for each parameter the share
+of surfaces of which the truth lies within one and two standard errors (68 and 95 % if these were normal), and the median
+relative error, where a roll-off was found.  The second is for the 95 % intervals of alpha and beta, of all surfaces: the share
+that holds the truth, and the median ends over the truth.
 Two minutes on one thread for the default number.
 """
 

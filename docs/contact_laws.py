@@ -92,18 +92,18 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def comparison(pairs: dict[float, tuple[Pair, Pair]]) -> str:
-    """Return what both laws make of a state at rest, of the plateau, of both transitions and of the minimum."""
+    """Return what both laws make of a state at rest, of the plateau, and of the speed at which it ends."""
     rows = []
     for load in TOLD:
         one, other = pairs[load]
         cells = [number(load)]
         for pair in (one, other):
-            cells += [number(pair.rest.central_separation), number(float(pair.curve.friction[0]), 4)]
-            cells += [number(pair.speed(name)) for name in MARKS]
+            cells += [number(pair.rest.central_separation), number(float(pair.curve.friction[0]), 3)]
+            cells += [number(pair.speed("fluid carries 5 % of the load"))]
         rows.append(cells)
     head = ["$F$"]
     for law in ("exponential", "Persson"):
-        head += [f"{law}: $s$ at rest", "plateau $\\mu/\\mu_0$", "speed at 5 % fluid", "speed at 10 % contact friction"]
+        head += [f"{law}: $s$ at rest", "plateau $\\mu/\\mu_0$", "its end"]
     return table(head, rows)
 
 
@@ -115,77 +115,51 @@ def simulated(alpha: float, beta: float) -> sb.contact_laws.TableLaw:
     )
 
 
-def laws_of_surface() -> tuple[sb.surfaces.PerssonLaw, dict[str, sb.surfaces.PerssonLaw | sb.contact_laws.TableLaw | None]]:
-    """Return Persson's law of the simulated surface, and all three laws of it by name."""
-    law = sb.surfaces.persson_law(SURFACE)
-    return law, {"exponential": None, "Persson": law, "GFMD": simulated(law.alpha, law.beta)}
-
-
 def pressures() -> str:
-    """Return the pressures that hold the simulated surface at some gaps, under all three laws."""
-    law, laws = laws_of_surface()
+    """Return the pressures that hold the simulated surface at some gaps, and those of both laws over them."""
+    law = sb.surfaces.persson_law(SURFACE)
     rows = []
     for gap in GAPS:
         s = np.array([law.alpha * gap])
-        told = {"exponential": -s, "Persson": law.log_pressure(s), "GFMD": laws["GFMD"].log_pressure(s)}
-        found = {name: law.beta * math.exp(float(value[0])) for name, value in told.items()}
-        rows.append(
-            [number(gap, 4), number(found["GFMD"])]
-            + [f"{number(found[name])}, {found[name] / found['GFMD']:.2f} times" for name in ("Persson", "exponential")]
-        )
-    return table(["gap over $h_\\mathrm{rms}$", "$p/E^*$, GFMD", "Persson", "exponential"], rows)
+        logarithms = {
+            "GFMD": simulated(law.alpha, law.beta).log_pressure(s),
+            "Persson": law.log_pressure(s),
+            "exponential": -s,
+        }
+        found = {name: law.beta * math.exp(float(value[0])) for name, value in logarithms.items()}
+        rows.append([number(gap, 4), number(found["GFMD"])])
+        rows[-1] += [f"{found[name] / found['GFMD']:.2f}" for name in ("Persson", "exponential")]
+    return table(["gap [$h_\\mathrm{rms}$]", "$p/E^*$, GFMD", "Persson/GFMD", "exponential/GFMD"], rows)
 
 
-def minimum_of(problem: sb.Groups | sb.LineContact, **settings: object) -> tuple[float, float, float, float]:
-    """Return speed, friction, gap over h_rms/alpha, and the asperities' share of the friction at the minimum of a curve."""
+def minimum_of(problem: sb.Groups | sb.LineContact, **settings: object) -> tuple[float, float, float]:
+    """Return speed, friction and gap over h_rms/alpha at the minimum of a curve."""
     curve = sb.stribeck_curve(problem, points=41, definition="balanced", **settings)
     if curve.minimum is None:
         raise RuntimeError("no minimum")
-    state = curve.minimum.solution
-    friction = state.friction(curve.boundary_friction, curve.beta, "balanced")
-    return curve.minimum.speed, curve.minimum.friction, state.central_separation, friction.contact_share
+    return curve.minimum.speed, curve.minimum.friction, curve.minimum.solution.central_separation
 
 
 def minima() -> str:
-    """Return the minimum of friction under the three laws of the simulated surface, and what each differs from the first."""
-    law, laws = laws_of_surface()
+    """Return how far the law of the simulated surface moves the minimum of friction from that of the exponential law."""
+    law = sb.surfaces.persson_law(SURFACE)
+    shape = simulated(law.alpha, law.beta)
+    settings = {"speed": TAIL_SPEEDS, "boundary_friction": TAIL_FRICTION, "beta": law.beta}
+    cases = {
+        f"load {load:g}": (*(sb.Groups(0.0, load, KAPPA * load, law=each) for each in (None, shape)), law.alpha, settings)
+        for load in TAIL_LOADS
+    }
+    demo = sb.load_case(DEMO).contact
+    cases["demonstration case"] = demo, demo.replace(law=shape), demo.alpha, {"speed": ("5 mm/s", "0.3 m/s")}
     rows = []
-    for load in TAIL_LOADS:
-        first = None
-        for name, shape in laws.items():
-            groups = sb.Groups(0.0, load, KAPPA * load, law=shape)
-            speed, friction, ratio, share = minimum_of(
-                groups, speed=TAIL_SPEEDS, boundary_friction=TAIL_FRICTION, beta=law.beta
-            )
-            first = first or (speed, friction)
-            rows.append(
-                [number(load), name, number(speed, 4), _change(speed, first[0]), number(friction, 4)]
-                + [_change(friction, first[1]), f"{ratio / law.alpha:.2f}", f"{100 * share:.2g} %"]
-            )
-    head = ["$F$", "law", "$\\lambda$ at the minimum", "change", "$\\mu$ there", "change", "gap there over $h_\\mathrm{rms}$"]
-    return table([*head, "asperities' share of friction"], rows)
-
-
-def demo() -> str:
-    """Return the minimum of the demonstration case under its own law and under that of the simulated surface."""
-    contact = sb.load_case(DEMO).contact
-    law, _ = laws_of_surface()
-    rows = []
-    first = None
-    for name, shape in (("exponential", None), ("GFMD", simulated(law.alpha, law.beta))):
-        other = contact if shape is None else contact.replace(law=shape)
-        speed, friction, ratio, share = minimum_of(other, speed=("5 mm/s", "0.3 m/s"))
-        first = first or (speed, friction)
-        rows.append(
-            [name, f"{1e3 * speed:.1f} mm/s", _change(speed, first[0]), number(friction, 4), _change(friction, first[1])]
-            + [f"{ratio / contact.alpha:.2f}", f"{100 * share:.2g} %"]
-        )
-    head = ["law", "speed at the minimum", "change", "$\\mu$ there", "change", "gap there over $h_\\mathrm{rms}$"]
-    return table([*head, "asperities' share of friction"], rows)
+    for name, (one, other, alpha, given) in cases.items():
+        (speed, friction, gap), (new_speed, new_friction, _) = minimum_of(one, **given), minimum_of(other, **given)
+        rows.append([name, f"{gap / alpha:.2f}", _change(new_speed, speed), _change(new_friction, friction)])
+    return table(["contact", "gap there [$h_\\mathrm{rms}$]", "speed there", "friction there"], rows)
 
 
 def _change(value: float, reference: float) -> str:
-    return "" if value == reference else f"{100 * (value / reference - 1):+.1f} %"
+    return f"{100 * (value / reference - 1):+.1f} %"
 
 
 def draw(pairs: dict[float, tuple[Pair, Pair]]) -> None:
@@ -239,7 +213,7 @@ def filled(text: str, blocks: dict[str, str]) -> str:
 @one_blas_thread
 def main(arguments: Sequence[str] = ()) -> None:
     """Solve, draw, and write the page."""
-    blocks = {"pressures": pressures(), "minima": minima(), "demo": demo()}
+    blocks = {"pressures": pressures(), "minima": minima()}
     if "--tail" not in arguments:
         law = persson()
         pairs = {}
