@@ -1,4 +1,4 @@
-"""Write the table of docs/cli.md: each command with what it takes, what it does, and its options.
+"""Write the table of docs/cli.md: each command with what it takes and what it does.
 
 ``python docs/commands.py`` rewrites the table between the marks of the page; ``tests/test_docs.py`` compares them.
 """
@@ -7,13 +7,11 @@ import inspect
 import re
 from pathlib import Path
 
-from stribeck.cli.arguments import GroupOptions, ModelOptions
 from stribeck.cli.running import COMMANDS
 
 PAGE = Path(__file__).parent / "cli.md"
 MARKED = re.compile(r"(<!-- commands -->\n\n).*?(\n<!-- end of commands -->)", re.DOTALL)
 
-OF_ALL = {"json", "force", "verbose", "plot", "no_notes"}  # Options that the page explains once
 READ_MORE = {
     "new": "data_sheet.md",
     "check": "checks.md",
@@ -36,25 +34,20 @@ READ_MORE = {
 
 
 def row(name, command):
-    """Return what a command takes, with a link to its page, what its help says first, and its options."""
-    words, options = [name], []
+    """Return what a command takes, with a link to its page, and what its help says first."""
+    words = [name]
     for each in inspect.signature(command).parameters.values():
-        if isinstance(each.default, GroupOptions | ModelOptions):  # which stand for several options
-            options += vars(each.default)
-        elif each.kind is each.KEYWORD_ONLY:
-            options.append("no-browser" if each.name == "browser" else each.name)
-        else:
+        if each.kind is not each.KEYWORD_ONLY:
             word = f"{each.name.upper()}{'...' * (each.kind is each.VAR_POSITIONAL or 'list' in str(each.annotation))}"
             words.append(word if each.default is each.empty else f"[{word}]")
     said = inspect.getdoc(command).split("\n", 1)[0].rstrip(".").replace("|", r"\|")
     shown = f"`{' '.join(words)}`"
-    listed = ", ".join(f"`--{option.replace('_', '-')}`" for option in options if option not in OF_ALL)
-    return f"| {f'[{shown}]({READ_MORE[name]})' if name in READ_MORE else shown} | {said} | {listed} |\n"
+    return f"| {f'[{shown}]({READ_MORE[name]})' if name in READ_MORE else shown} | {said} |\n"
 
 
 def with_table(text):
     """Return the text of the page with the commands of now."""
-    head = "| `stribeck` | What it does | Options |\n| --- | --- | --- |\n"
+    head = "| `stribeck` | What it does |\n| --- | --- |\n"
     table = head + "".join(row(name, command) for name, command in COMMANDS.items())
     text, count = MARKED.subn(lambda found: found[1] + table + found[2], text)
     if count != 1:
