@@ -1,12 +1,7 @@
 r"""Boundary lubrication of a ball: the load share of a slow fluid in a contact of small relative roughness.
 
-As on the line the total pressure stays Hertz's to first order, so that a fluid pressure
-:math:`(\lambda/\kappa^2) P_1 \cos\theta` opens the gap by :math:`(\lambda/\kappa) H_1 \cos\theta`,
-:math:`H_1 = P_1/(1-r^2)^{1/2}`.  The flow over the gap so opened has a mean over the angle,
-
-.. math:: H_0^3 P_2' = \tfrac12 H_1 (1 - 3 H_0^2 P_1'), \qquad
-    \frac{F_f}{F_N} = \frac{\lambda^2}{\kappa^4} \phi, \quad
-    \phi = -\frac34 \int_0^1 r^2 H_1 \frac{1 - 3 H_0^2 P_1'}{H_0^3} \, dr .
+As on the line, but the pressure :math:`P_1 \cos\theta` and the gap :math:`H_1 \cos\theta`, :math:`H_1 = P_1/(1-r^2)^{1/2}`,
+that it opens go with the angle: the flow over that gap carries load.
 
 Source: ours, as [BP] Appendix C and D for the line; theory.md, section 11.
 """

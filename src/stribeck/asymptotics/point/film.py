@@ -1,30 +1,7 @@
 r"""The slow smooth ball: the film by the inlet of the line, the leakage to the sides, and the minimum film.
 
-*Inlet.*  On the scale of its width the edge of the contact is straight.  At the angle :math:`\psi` from the inlet's middle
-it is the inlet of a line at the speed :math:`\lambda \cos\psi`, over a half-space whose kernel is :math:`4/\pi` times
-that of the line; both change the scales, and with :math:`y = \sin\psi`
-
-.. math:: h = c \lambda^{3/5} (1 - y^2)^{3/10}, \qquad c = 0.445830 \left(\frac\pi4\right)^{1/5} = 0.424803,
-
-along the whole streamline: the horseshoe.
-
-*Leakage.*  The flux :math:`\lambda h - h^3 p_x` along the middle loses :math:`h^3 p_{yy} = -h^3 (1-x^2)^{-1/2}` to the
-sides.  With
-:math:`q` the film of the same flux,
-
-.. math:: q(x) = c \lambda^{3/5} \left[1 + 2 c^2 \lambda^{1/5} \left(\arcsin x + \tfrac\pi2\right)\right]^{-1/2}, \qquad
-    h = q - \frac{q^3}{\lambda} \frac{x}{(1 - x^2)^{1/2}} .
-
-*Outlet.*  The outlet of the line has a solution for any incoming film; here this is q(1), thinner than that of the inlet,
-and the ratio of the minimum to it grows as it falls (:func:`stribeck.asymptotics.smooth.film_layers.outlet`).
-
-*Sides.*  At the angle :math:`\phi` from the sides the edge layer is :math:`(\lambda\phi)^{2/5}` wide and the contact only
-:math:`\phi^2/2` deep.  Both are equal for :math:`\phi \sim \lambda^{1/4}`: there inlet, outlet and leakage are one
-problem, with
-
-.. math:: h \sim \lambda^{3/4}, \quad p \sim \lambda^{1/4}, \quad \text{width} \sim \lambda^{1/2},
-
-and there the film has its minimum.
+Inlet and leakage are theory.md Eqs. (25) and (26).  The outlet of the line has a solution for any incoming film, here for what
+the leakage leaves of it.  At the sides, where :math:`h \sim \lambda^{3/4}`, inlet, outlet and leakage are one problem.
 
 Source: ours, on the inlet of J. H. Snoeijer, J. Eggers and C. H. Venner, Phys. Fluids 25, 101705 (2013); theory.md,
 section 11.

@@ -1,17 +1,7 @@
-r"""Friction of a ball at any speed, load and roughness in closed form, with the logarithm of section 11 of theory.md.
+"""Friction of a ball at any speed, load and roughness in closed form, with the logarithm of theory.md Eq. (21).
 
-.. math:: \mu = \mu_0 S + \tfrac34 \beta \bar F_N^{1/3} J, \qquad
-    J = J_\mathrm{fp} + \tfrac{16}{15} \pi \lambda \ln X_c \; (+ J_m)
-
-*Smooth.*  Slow, the horseshoe :math:`h = c \lambda^{3/5} (1-y^2)^{3/10}` is sheared, fast the rigid ball:
-
-.. math:: J_\mathrm{fp} \to \frac{\lambda^{2/5}}{3c} \int_{-1}^1 (1-y^2)^{1/5} dy = 1.4054 \, \lambda^{2/5}, \qquad
-    J_\mathrm{fp} \to -\pi\lambda \left[\tfrac{8}{15} \ln(2 h_0) + \tfrac25\right] .
-
-*Rough.*  Where asperities keep the gap open, at speeds below that of a film of this thickness, the shear is smaller.
-
-*Published.*  The definition of the article also has the moment of the contact pressure, :math:`J_m = \int p_c \, x`: that of
-the boundary regime at the actual gap, times a power of the asperities' share.
+Slow, the horseshoe of the smooth film is sheared, fast the rigid ball; where asperities keep the gap open, at speeds below
+that of a film of this thickness, the shear is smaller.  The published definition also has the moment of the contact pressure.
 
 Source: ours; theory.md, section 11.
 """

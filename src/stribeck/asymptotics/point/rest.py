@@ -1,20 +1,6 @@
 r"""The rough ball at rest, of large and of small indentation, and its edge.
 
-With the load fixed, all but a shift of the gap depends on kappa alone: :math:`p_c = F^{-1/3} e^{-h/\kappa}`.
-
-*Nearly smooth.*  Hertz's pressure asks for the gap :math:`-\kappa \ln[F^{1/3} (1-r^2)^{1/2}]`, which deflects the
-half-space in its turn.  By Abel's transform the pressure under it is :math:`\kappa p_1`,
-
-.. math::
-
-    p_1 = -\frac{1}{(1-r^2)^{1/2}} - \frac12 \int_r^1 \frac{g'(t) \, dt}{(t^2-r^2)^{1/2}}, \qquad
-    g(t) = -1 + \frac{t \arcsin t - \pi/2}{(1-t^2)^{1/2}}
-
-and a ring at the edge, of load :math:`\pi^2 \kappa/8` per length; :math:`p_1(0) = -\tfrac12 - G` with Catalan's constant G.
-
-*The edge* is that of the line (:mod:`stribeck.asymptotics.smooth.edge_layer`), as the contact is straight on the scale of the
-layer.  The half-space under a ring has the kernel :math:`-(4/\pi^2) \ln|r - r'|` where the line has
-:math:`-(1/\pi) \ln|x - y|`, so that :math:`\pi\kappa/4` stands where there is :math:`\kappa`.
+The edge is that of the line with :math:`\pi\kappa/4` for :math:`\kappa` (:mod:`stribeck.asymptotics.smooth.edge_layer`).
 
 Source: ours; theory.md, section 11.
 """
@@ -81,11 +67,14 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
     .. math::
 
         h = -\kappa \ln\left[\bar F_N^{1/3} (1 - x^2)^{1/2}\right] \;
-        \left(- \frac{\kappa^2 p_1(x)}{(1 - x^2)^{1/2}}\right)
+        \left(- \frac{\kappa^2 p_1(x)}{(1 - x^2)^{1/2}}\right), \qquad
+        p_1 = -\frac{1}{(1-x^2)^{1/2}} - \frac12 \int_x^1 \frac{g'(t) \, dt}{(t^2-x^2)^{1/2}}, \quad
+        g(t) = -1 + \frac{t \arcsin t - \pi/2}{(1-t^2)^{1/2}}
 
     Notes
     -----
-    Compared with the solver up to 0.9 of the radius; the edge has a layer of width kappa**(2/3).
+    Compared with the solver up to 0.9 of the radius; the edge has a layer of width kappa**(2/3).  Under the first term the
+    half-space carries :math:`\kappa p_1` beside Hertz's pressure, by Abel's transform, and a ring at the edge.
     """
     x = np.asarray(x, dtype=float)
     below = np.where(np.abs(x) < 1, (1 - x) * (1 + x), np.nan)

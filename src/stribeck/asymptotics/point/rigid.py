@@ -1,13 +1,7 @@
 r"""Fast: the smooth ball that is hardly deflected, carried by the lift that its deflection gives.
 
-Under the parabola :math:`h = h_0 + r^2/2` the pressure :math:`-(\lambda/5) x/h^2` is odd in x and carries nothing.  It
-deflects the half-space by :math:`w_1 \cos\theta`, and the flow over that carries
-
-.. math:: \int p_2 \, d^2r = -\frac\pi2 \int_0^\infty r^2 w_1 \frac{\lambda - 3 h^2 p_1'}{h^3} \, dr
-    = \frac{27 \pi^2}{6400 \sqrt2} \, \lambda^2 h_0^{-5/2} .
-
-With Hankel's transform, :math:`p_1(k) = -\tfrac25 \lambda h_0^{-1} k K_0(\sqrt2 k)` in units of :math:`h_0^{1/2}`, the
-integral is one over products of modified Bessel functions, which is known.
+The pressure under the parabola is odd in x and carries nothing; the flow over the deflection that it causes carries
+:math:`27 \pi^2/(6400 \sqrt2) \, \lambda^2 h_0^{-5/2}`.
 
 Source: ours; the literature has the lift as :math:`0.416 \, \eta^2 V^2 R^{5/2} h_0^{-5/2}/E^*`, a quarter of ours, with
 V = 2 U in Reynolds' equation; theory.md, section 11.

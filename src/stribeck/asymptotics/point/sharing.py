@@ -1,19 +1,7 @@
 r"""How asperities and fluid share the load under a ball at any speed, explicitly as the speed of a share, and the inverse.
 
-The two mechanisms are those of the line (:mod:`stribeck.asymptotics.rough.load_sharing`), with :math:`X = (1 - S)/S`,
-:math:`A = -\tfrac13 \ln \bar F_N + (\tfrac12 + G) \kappa`, the gap in the middle at rest over :math:`\kappa`, and
-:math:`G_X = A + \ln(1 + X)`.
-
-*Wedge.*  :math:`\lambda_w = \kappa^2 [X (1 + X)]^{1/2} g(G_X)`, which for :math:`X \ll 1` is the boundary regime with
-its edges.
-
-*Film.*  The film of a ball is a horseshoe, thinner at its sides, and asperities touch there first.  Under
-:math:`h = \kappa H (1 - y^2)^q` the share is
-
-.. math:: S = \tfrac32 \bar F_N^{-1/3} \, \frac2\pi \int_{-1}^1 (1-y^2)^{1/2} e^{-H (1-y^2)^q} \, dy ,
-
-which gives H; q is fitted, near the 3/10 of slow smooth films where many asperities touch, and less for thick films,
-whose sides are not as thin.
+Wedge and film are those of the line (:mod:`stribeck.asymptotics.rough.load_sharing`), with the gap at rest of the ball; but
+the film is a horseshoe, :math:`h = \kappa H (1 - y^2)^q` with a fitted q, whose thin sides asperities touch first.
 
 Source: ours; theory.md, section 11.
 """

@@ -1,16 +1,7 @@
 r"""Films of a cylinder that end at ambient pressure, ``cavitation = "exit"``: boundary lubrication, and smooth surfaces.
 
-In boundary lubrication the share of the fluid is of first order in the speed.  Asperities carry the load, so that the gap is
-:math:`h = \kappa H(x)` with :math:`H = -\frac12 \ln \bar F_N - \frac12 \ln(1 - x^2)`.  At the first order in
-:math:`n = \lambda/\kappa^2` the film upstream of its exit is that of this gap,
-
-.. math::
-
-    p_f = n \int_{-1}^{x} \frac{H - H^*}{H^3} \, dx, \qquad H(x_c) = H^*, \qquad
-    \int_{-1}^{x_c} \frac{H - H^*}{H^3} \, dx = 0
-
-and carries the share :math:`F_f/F_N = n \, \varphi_1(\bar F_N)`.  Without an exit suction cancels this order, and the share is
-:math:`n^2 \varphi`.
+In boundary lubrication the share of the fluid is of first order in the speed, which suction cancels in a film without an exit:
+theory.md, section 12.
 
 Source: ours; theory.md, section 12.
 """
@@ -132,7 +123,11 @@ def _speed(value: Value) -> Value:
 def boundary_film_with_free_exit(load: float) -> FreeExit:
     r"""Return the first order of a film with a free exit in boundary lubrication.
 
-    .. math:: \varphi_1 = \frac2\pi \int_{-1}^{x_c} (x_c - x) \, \frac{H - H^*}{H^3} \, dx
+    .. math::
+
+        \varphi_1 = \frac2\pi \int_{-1}^{x_c} (x_c - x) \, \frac{H - H^*}{H^3} \, dx, \qquad
+        \int_{-1}^{x_c} \frac{H - H^*}{H^3} \, dx = 0, \quad H(x_c) = H^*, \quad
+        H = -\tfrac12 \ln\left[\bar F_N (1 - x^2)\right]
 
     Notes
     -----

@@ -1,18 +1,7 @@
 r"""How asperities and fluid share the load, at any speed: which speed gives which share, explicitly, and the inverse.
 
-For the share S of the asperities let :math:`X = (1 - S)/S`, and measure gaps in :math:`\kappa u_\mathrm{Hz}`. Under a
-contact pressure that carries the share S in the shape of Hertz's, the central gap is
-:math:`G = -\tfrac12 \ln \bar F_N + \ln(1 + X)`; under a uniform one it is :math:`H = G + \ln(4/\pi)`. Two mechanisms open the
-gap so far, each at its own speed:
-
-*Wedge.* As :math:`\kappa \to 0` at a fixed fluid number :math:`n = \lambda/\kappa^2` elasticity holds the total pressure at
-Hertz's, and Reynolds' equation alone decides how it is shared (:mod:`stribeck.asymptotics.smooth.wedge`). Its solutions obey
-:math:`n = [X (1 + X)]^{1/2} g(G)` with one function g for all loads, except where :math:`X \ll 1` and :math:`g = \phi^{-1/2}`.
-
-*Film.* The smooth film of the speed :math:`\lambda_f` is as thick as H.
-
-The one at the lower speed opens the gap: the two speeds are combined as a root of a sum of inverse powers. The limits are
-exact; what lies between is fitted to solved states, 21 600 over the box and 1 700 of the wedge.
+Wedge and film open the gap, each at its own speed: theory.md, section 10, has them with X and G; :math:`H = G + \ln(4/\pi)`.
+The limits are exact; what lies between is fitted to solved states, 21 600 over the box and 1 700 of the wedge.
 
 Source: ours, with phi of [BP] Appendix D; theory.md, section 10.
 """

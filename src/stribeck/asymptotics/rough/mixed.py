@@ -1,13 +1,7 @@
-r"""Mixed lubrication from the side of the smooth film: asperities that reach through it, and the friction with them.
+"""Mixed lubrication from the side of the smooth film: asperities that reach through it, and the friction with them.
 
-[BP] put the uniform film of the smooth contact into the contact law.  Ours adds that the outlet is thinner than
-the film, and that asperities which carry load thicken the film: where their pressure is of the order of the pressure of the
-inlet, :math:`\lambda^{1/5}`, the inlet takes in more fluid.  That makes the load share S on which it depends its own argument,
-
-.. math:: S = S_0 \exp\left(-b S \lambda^{-1/5}\right) \quad\Rightarrow\quad
-    S = \frac{\lambda^{1/5}}{b} W_0\!\left(b S_0 \lambda^{-1/5}\right)
-
-with Lambert's W.
+[BP] put the uniform film of the smooth contact into the contact law, theory.md Eq. (13).  Ours adds that the outlet is
+thinner, and that the inlet takes in more fluid where asperities carry load.
 
 Source: [BP] Section "Hydrodynamic-to-mixed lubrication transition"; theory.md, section 7.
 """

@@ -1,17 +1,8 @@
-r"""Slow speed at a rough contact of small relative roughness: the fields to second order in the speed, and the fluid's load.
+"""Slow speed at a rough contact of small relative roughness: the fields to second order in the speed, and the fluid's load.
 
-With gaps in kappa u_Hz, :math:`H_0 = -\tfrac12 \ln F - \tfrac12 \ln(1 - x^2)`, and :math:`p_0 = (1 - x^2)^{1/2}`,
+With gaps in kappa u_Hz all depend on the load alone; :mod:`stribeck.asymptotics.rough.slow_contact` integrates.
 
-.. math::
-
-    H_0^* = \frac{\int H_0^{-2} dx}{\int H_0^{-3} dx}, \quad
-    P_{f,1} = \int_{-1}^x \frac{H_0 - H_0^*}{H_0^3} dy, \quad
-    H_1 = \frac{P_{f,1}}{p_0}, \quad
-    P_{f,2} = \int_{-1}^x \frac{(3 H_0^* - 2 H_0) H_1}{H_0^4} dy
-
-all depend on the load alone; :mod:`stribeck.asymptotics.rough.slow_contact` integrates.
-
-Source: [BP] Appendix C and D, with the cubes that the former lacks.
+Source: [BP] Appendix C and D, with the cubes that the former lacks; theory.md, section 7.
 """
 
 from __future__ import annotations

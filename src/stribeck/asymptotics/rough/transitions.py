@@ -1,15 +1,7 @@
-r"""The transitions along a Stribeck curve: its minimum, where boundary lubrication ends, and where both lines meet.
+"""The transitions along a Stribeck curve: its minimum, where boundary lubrication ends, and where both lines meet.
 
-With the contact share and the viscous friction of a slow smooth film, [BP]'s friction has its minimum at the film ratio
-
-.. math::
-
-    \Lambda^{1/3} e^{-\Lambda} = k = \frac{2}{9 c^{5/3}} \frac{\beta \bar h_\mathrm{rms}^{2/3} \bar F_N^{1/3}}{\mu_0}
-    \quad\Rightarrow\quad \Lambda = -\tfrac13 W_{-1}(-3 k^3)
-
-with a branch of Lambert's W that ends at :math:`k = (3e)^{-1/3} = 0.4968`; beyond, this friction only grows with speed.  Its
-prediction of the minimum is exact for vanishing roughness, and slow to become so; ours is the minimum of
-:func:`stribeck.asymptotics.rough.mixed.friction`, found numerically.
+[BP] predict the minimum by theory.md Eq. (14), which is exact for vanishing roughness, and slow to become so; ours is the
+minimum of :func:`stribeck.asymptotics.rough.mixed.friction`, found numerically.
 
 Source: [BP] Sections "Hydrodynamic-to-mixed lubrication transition", "Boundary-to-mixed lubrication transition", "Conclusion".
 """

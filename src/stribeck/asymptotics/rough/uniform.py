@@ -1,11 +1,9 @@
-r"""Friction at any speed, load and roughness in closed form, from the law of load sharing and the smooth film.
+"""Friction at any speed, load and roughness in closed form, from the law of load sharing and the smooth film.
 
-.. math:: \mu = \mu_0 S + \mu_f
+The viscous part is the shear of the smooth film, reduced where roughness keeps the gap open at a lower speed, and the moment
+of the contact pressure that the paper's definition of the friction contains.
 
-The viscous part is the sum of the shear of the smooth film, reduced where roughness keeps the gap open at a lower speed, and
-of the moment of the contact pressure that the paper's definition of the friction contains (theory.md, section 6).
-
-Source: ours; theory.md, section 10.
+Source: ours; theory.md, sections 6 and 10.
 """
 
 from __future__ import annotations

@@ -1,22 +1,12 @@
 r"""The edge of a rough contact at rest: how its logarithmic gap passes into the gap of Hertz outside.
 
-For kappa -> 0, with :math:`\xi` from the edge outwards in units of :math:`\kappa^{2/3}` a,
+With :math:`\xi` from the edge at :math:`1 - \kappa` outwards in units of :math:`\kappa^{2/3}`, and :math:`P = e^{-H}`,
 
 .. math::
 
-    p = \kappa^{1/3} P(\xi), \qquad h = \kappa \left[-\tfrac12 \ln F - \tfrac13 \ln\kappa + H(\xi)\right], \qquad
-    P = e^{-H}, \qquad H'' = -\frac1\pi \, \mathrm{PV} \!\int \frac{P'(\eta)}{\xi - \eta} \, d\eta .
+    H = H_H - \tfrac12 \ln2 - \frac1\pi \int (P - P_H) \ln|\xi - \eta| \, d\eta, \qquad \int (P - P_H) \, d\eta = \frac\pi2 ,
 
-The gap :math:`-(\kappa/2) \ln[F (1 - x^2)]` of the contact takes the pressure
-:math:`\kappa [-(1 - x^2)^{-1/2} + (\pi/2) \delta(x - 1) + (\pi/2) \delta(x + 1)]` beside that of Hertz.  Its two parts are
-what the layer has to match: :math:`P - P_H` carries the load pi/2, and the edge lies at x = 1 - kappa,
-
-.. math::
-
-    H = H_H - \tfrac12 \ln2 - \frac1\pi \int (P - P_H) \ln|\xi - \eta| \, d\eta, \qquad \int (P - P_H) \, d\eta = \frac\pi2 .
-
-By :math:`P H' = -P'`, whose integral has no constant part and whose first moment is the load, :math:`P - P_H` has no part
-in :math:`|\xi|^{-3/2}` inside and begins with :math:`5/(8 \sqrt2) \, |\xi|^{-5/2}`.  The gap rises outwards throughout.
+which matches theory.md Eq. (8).
 
 Source: [BP] Appendix B, with the principal value of 1/(xi - eta) for the printed 1/\|x - y\|; theory.md, section 7.
 """

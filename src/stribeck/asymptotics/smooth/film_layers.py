@@ -1,20 +1,7 @@
-r"""Inlet and outlet of the smooth film, speed group -> 0: how the uniform film passes into the gap of Hertz outside.
+"""Inlet and outlet of the smooth film, speed group -> 0: how the uniform film passes into the gap of Hertz outside.
 
-With :math:`\xi` from the edge outwards in units of :math:`\lambda^{2/5}` a, in both layers,
-
-.. math::
-
-    h = \lambda^{3/5} H(\xi), \qquad p_f = \lambda^{1/5} P(\xi), \qquad P' = \mp \frac{H - c}{H^3}, \qquad
-    H = H_H + c - \frac1\pi \int (P - P_H)(\eta) \, \ln|\xi - \eta| \, d\eta
-
-(minus in the inlet, where the flow goes to decreasing :math:`\xi`), and :math:`P - P_H` vanishes at both ends, carries no load
-and has no part in :math:`|\xi|^{-1/2}`, which would be a shift of the edge.  Inside, the film departs from c as
-:math:`H - c \to \pm c^3 (-2\xi)^{-1/2}`, so that :math:`P - P_H` goes as :math:`|\xi|^{-3/2} \ln|\xi|`.
-
-In the contact both equations are linear for small disturbances, :math:`\delta H = \mp c^3 \, \delta P'` and a deflection under
-:math:`\delta P`, with the symbol :math:`1/|k| \pm i c^3 k`.  Its phase turns by half a turn along k, in one sense in the inlet
-and in the other in the outlet, so that the inlet has one condition more than the outlet: it has a solution for one c only, the
-film that it lets in, and the outlet has one for any c.
+They are theory.md Eq. (9), where P - P_H vanishes at both ends, carries no load and does not shift the edge.  The inlet has
+one condition more than the outlet, and so a solution for one c only: the film that it lets in.
 
 Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner, Phys. Fluids 25, 101705 (2013); theory.md, section 7.
 """

@@ -1,18 +1,9 @@
 r"""Film under any smooth soft profile, from the pressure of its dry contact: made by its edge, or by its steepest rise.
 
-A dry pressure begins as :math:`p = k d^{1/2}` at a distance d from its edge.  With :math:`p' = 6 \eta U (h - h^*)/h^3` the
-inlet there lets in
+A dry pressure begins as :math:`p = k d^{1/2}` at a distance d from its edge, where an inlet of the length
+:math:`\ell = (6 \eta U {E^*}^2/k^3)^{2/5}` lets in the film of a parabola with the same edge.
 
-.. math::
-
-    h^* = 0.5121 \, (6 \eta U)^{3/5} {E^*}^{1/5} k^{-4/5}, \qquad
-    \ell = \left(\frac{6 \eta U {E^*}^2}{k^3}\right)^{2/5}
-
-with the inlet length :math:`\ell`.  The constant is that of the parabola, whose :math:`\ell/a` is
-:math:`(4 \lambda)^{2/5}/2^{3/5}`.  A rise :math:`p'_\mathrm{max}` inside the contact lets
-through no more than :math:`h^* = (8 \eta U/(9 p'_\mathrm{max}))^{1/2}`.
-
-Source: ours, and the inverse theory of Blok; theory.md, section 7.
+Source: ours, and the inverse theory of Blok; theory.md, section 13.
 """
 
 from __future__ import annotations

@@ -1,24 +1,15 @@
 r"""Common parts of the boundary layers at the edge of a contact: a half-space under a pressure that grows like that of Hertz.
 
-Near an edge of the Hertz contact, in a coordinate :math:`\xi` across the layer with the contact at :math:`\xi < 0`,
-
-.. math::
-
-    P_H = (-2\xi)^{1/2}, \; \xi < 0, \qquad H_H = \frac{2 \sqrt2}{3} \, \xi^{3/2}, \; \xi > 0, \qquad
-    H = H_H + C - \frac1\pi \int (P - P_H)(\eta) \, \ln|\xi - \eta| \, d\eta .
-
-The second derivative of the last equation is :math:`H'' = -\pi^{-1} \, \mathrm{PV} \!\int P'(\eta)/(\xi - \eta) \, d\eta`.
-As :math:`P_H` has a root that no polynomial resolves, it is replaced by a smooth pressure of the same far field whose gap is
-known: continued harmonically to the heights a = 1, 2, 3 above the line,
+The pressure of Hertz in theory.md Eq. (9) has a root that no polynomial resolves.  A smooth pressure of the same far field,
+whose gap is known, stands for it:
 
 .. math::
 
     P_B = \sqrt2 \, \mathrm{Re} \sum_a c_a (i a - \xi)^{1/2}, \qquad
-    H_B = \frac{2 \sqrt2}{3} \, \mathrm{Re} \sum_a c_a (\xi + i a)^{3/2}, \qquad c = (3, -3, 1) .
+    H_B = \frac{2 \sqrt2}{3} \, \mathrm{Re} \sum_a c_a (\xi + i a)^{3/2}, \qquad a = 1, 2, 3, \quad c = (3, -3, 1) .
 
-The weights make the moments 0, 1, 2 of a equal to 1, 0, 0, so that :math:`P_B - P_H` carries no load and falls as
-:math:`|\xi|^{-7/2}` inside and :math:`\xi^{-5/2}` outside.  What is left, :math:`P - P_B`, is smooth; its panels double in
-width with the distance.  What presses, asperities or a fluid, is in :mod:`.edge_layer` and :mod:`.film_layers`.
+The moments 0, 1, 2 of a are then 1, 0, 0, so that :math:`P_B - P_H` carries no load and falls as :math:`|\xi|^{-7/2}` inside
+and :math:`\xi^{-5/2}` outside.
 """
 
 from __future__ import annotations

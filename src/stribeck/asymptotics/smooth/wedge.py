@@ -1,15 +1,7 @@
-r"""Mixed lubrication in the limit of small relative roughness at a fixed fluid number, without elasticity.
+"""Mixed lubrication in the limit of small relative roughness at a fixed fluid number, without elasticity: theory.md Eq. (16).
 
-As :math:`\kappa \to 0` gaps of the order of the roughness do not change the elastic deformation, so that the total pressure
-stays Hertz's while :math:`n = \lambda/\kappa^2` decides how asperities and fluid share it. With gaps H in
-:math:`\kappa u_\mathrm{Hz}`
-
-.. math::
-
-    F^{-1/2} e^{-H} + p_f = (1 - x^2)^{1/2}, \qquad \frac{dp_f}{dx} = n \, \frac{H - H^*}{H^3}, \qquad p_f(\pm 1) = 0 .
-
-[BP] Appendix C expands this in n to second order; here it is solved. Neither the edge layers nor the film of the smooth
-contact are in it: it holds for :math:`n \ll \kappa^{-1/3}`.
+[BP] Appendix C expands this in the fluid number n to second order; here it is solved.  Neither the edge layers nor the film of
+the smooth contact are in it: it holds for n << kappa**(-1/3).
 
 Source: ours, from [BP] Eqs. (thin-film_dl), (contact_pressure_dl), (Hertz); theory.md, section 10.
 """
