@@ -352,7 +352,7 @@ def test_from_load_one_on_the_laws_of_load_sharing_have_no_value_and_say_so():
         assert np.isnan(asymptotics.perturbation.phi([0.1, 1.0, 3.0])).tolist() == [False, True, True]
 
 
-FORMS = "'uniform', 'exact', 'expansion' or 'leading'"
+FORMS = "'uniform', 'exact', 'expansion', 'leading'"
 BALL = sb.Groups(1e-3, 1e-3, 1e-5, geometry="point")
 REFUSED = [
     ("boundary.friction", {"printed": "no"}, "printed = .*; it must be"),

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from typing import Any, TypeVar, get_args
+from typing import Any, Literal, TypeVar, get_args, get_origin
 
 from stribeck.quantities import docstrings
 
@@ -133,7 +133,11 @@ def _filled(function: Callable[..., Any], words: dict[str, str], returns: str, r
 
 def _kind(function: Callable[..., Any], argument: inspect.Parameter) -> str:
     """Return the type of an argument in the words of a docstring."""
-    kind = KINDS.get(str(argument.annotation), str(argument.annotation))
-    choices = get_args(function.__globals__.get(kind))
-    quoted = ", ".join(f'"{choice}"' for choice in choices)
-    return f"{{{quoted}}}" if choices else kind
+    quoted = ", ".join(f'"{choice}"' for choice in choices(function, argument))
+    return f"{{{quoted}}}" if quoted else KINDS.get(str(argument.annotation), str(argument.annotation))
+
+
+def choices(function: Callable[..., Any], argument: inspect.Parameter) -> tuple[str, ...]:
+    """Return the words of which an argument is one, or none where it is something else."""
+    kind = function.__globals__.get(str(argument.annotation))
+    return get_args(kind) if get_origin(kind) is Literal else ()

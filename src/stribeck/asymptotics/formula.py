@@ -20,7 +20,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.asymptotics.constants import BALL_FILM_CONSTANT, FILM_CONSTANT
-from stribeck.asymptotics.documentation import completed
+from stribeck.asymptotics.documentation import choices, completed
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.contact import model_words
 from stribeck.contacts.groups import Geometry, Groups
@@ -28,7 +28,7 @@ from stribeck.contacts.model import BASE_MODEL
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.docstrings import Described
 from stribeck.quantities.lazy import cached_property
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, checked_word, show
 
 Value = float | Array
 Arguments = ParamSpec("Arguments")
@@ -44,14 +44,6 @@ def coefficient(name: str, value: Any) -> float:
     return float(found)
 
 
-def _check_option(name: str, value: Any, default: Any) -> None:
-    """Refuse a switch that is neither on nor off, and several options at once."""
-    if isinstance(default, bool) and not isinstance(value, bool | np.bool_):
-        raise InputError(f"{name} = {show(value)}; it must be True or False.")
-    if isinstance(default, int | str) and isinstance(value, np.ndarray):
-        raise InputError(f"{name} = {show(value)}; it must be one value for all states.")
-
-
 def second(terms: int) -> int:
     """Return 1 if the second term is asked for, else 0."""
     if terms not in (1, 2):
@@ -61,6 +53,15 @@ def second(terms: int) -> int:
 
 class OutOfRangeWarning(UserWarning):
     """A formula was used outside its range, or has no value there."""
+
+
+def checked_load(load: Value, geometry: Geometry) -> Value:
+    """Return the load of phi as groups check it; warn where the contact at rest has no positive gap."""
+    found = Groups(0.0, load, 0.0, geometry=geometry).load
+    if np.any(np.greater_equal(found, 1)):
+        message = "phi is undefined (nan) at load groups of 1 or more, where the static contact has no positive gap."
+        warnings.warn(message, OutOfRangeWarning, stacklevel=3)
+    return found
 
 
 def _ratio(numerator: Value, denominator: Value) -> Value:
@@ -145,15 +146,17 @@ class Formula(Described, Generic[Arguments]):
     plane: Annotated[Plane, "smooth contact (roughness 0, whatever the groups say), contact at rest (speed 0), or both"]
     limits: Annotated[tuple[Limit, ...], "its range"]
     worst: Annotated[float, "largest relative error in this range, measured"]
-    small: Annotated[str, "parameter with which the error vanishes, a key of :data:`PARAMETERS`; empty for a fit"]
-    error_order: Annotated[float, "the relative error goes as ``small**error_order``"]
-    approach: Annotated[Callable[[float], Groups] | None, "``approach(small)``: groups along which the error is followed"]
-    steps: Annotated[tuple[float, ...], "values of ``small`` at which tests follow it"]
+    source: Annotated[str, "its source"]
+    small: Annotated[str, "parameter with which the error vanishes, a key of :data:`PARAMETERS`; empty for a fit"] = ""
+    error_order: Annotated[float, "the relative error goes as ``small**error_order``"] = 0.0
+    approach: Annotated[Callable[[float], Groups] | None, "``approach(small)``: groups along which the error is followed"] = (
+        None
+    )
+    steps: Annotated[tuple[float, ...], "values of ``small`` at which tests follow it"] = ()
     interval: Annotated[
         Callable[[Groups], tuple[float, float]] | None,
         "of a field: ``interval(groups)``, the positions [a] between which it is compared with the solver",
-    ]
-    source: Annotated[str, "its source"]
+    ] = None
     geometry: Annotated[Geometry, "whether it is about the cylinder or about the ball"] = "line"
     uses: Annotated[tuple[str, ...], "the groups on which its value depends"] = GROUPS
 
@@ -220,7 +223,7 @@ class Formula(Described, Generic[Arguments]):
             elif name in ("x", "share"):
                 call.arguments[name] = real_array(name, value)[()]
             else:
-                _check_option(name, value, self._signature.parameters[name].default)
+                self._check_option(name, value)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
             value = self.function(*call.args, **call.kwargs)
         given = {name: call.arguments[name] for name in ("boundary_friction", "beta") if name in call.arguments}
@@ -233,6 +236,17 @@ class Formula(Described, Generic[Arguments]):
     @cached_property
     def _signature(self) -> inspect.Signature:
         return inspect.signature(self.function)
+
+    def _check_option(self, name: str, value: Any) -> None:
+        """Refuse a switch that is neither on nor off, several options at once, and an unknown word."""
+        argument = self._signature.parameters[name]
+        if isinstance(argument.default, bool) and not isinstance(value, bool | np.bool_):
+            raise InputError(f"{name} = {show(value)}; it must be True or False.")
+        if isinstance(argument.default, int | str) and isinstance(value, np.ndarray):
+            raise InputError(f"{name} = {show(value)}; it must be one value for all states.")
+        words = choices(self.function, argument)
+        if words:
+            checked_word(name, value, words)
 
     def check(self, groups: Groups) -> None:
         """Refuse groups of the other geometry, of another model than the article's, and of a law for which it was not derived.
@@ -282,22 +296,9 @@ class Formula(Described, Generic[Arguments]):
 
 
 def formula(
-    *,
-    predicts: str = "",
-    plane: Plane,
-    limits: tuple[Limit, ...],
-    worst: float,
-    small: str = "",
-    error_order: float = 0.0,
-    approach: Callable[[float], Groups] | None = None,
-    steps: tuple[float, ...] = (),
-    interval: Callable[[Groups], tuple[float, float]] | None = None,
-    source: str,
-    geometry: Geometry = "line",
-    uses: tuple[str, ...] = GROUPS,
-    undefined: str = "",
+    *, predicts: str = "", undefined: str = "", **entry: Any
 ) -> Callable[[Callable[Concatenate[Groups, Arguments], Value]], Formula[Arguments]]:
-    """Return the decorator that makes a function a :class:`Formula`; arguments as its attributes.
+    """Return the decorator that makes a function a :class:`Formula`, of which ``entry`` are the other attributes.
 
     ``predicts`` is the name of the function by default, and ``undefined`` states where the value is nan.  What the docstring
     leaves out is filled in, see :mod:`stribeck.asymptotics.documentation`.
@@ -305,11 +306,9 @@ def formula(
 
     def decorate(function: Callable[Concatenate[Groups, Arguments], Value]) -> Formula[Arguments]:
         quantity = predicts or function.__name__
-        made = Formula(
-            function, quantity, plane, limits, worst, small, error_order, approach, steps, interval, source, geometry, uses
-        )
+        made = Formula(function, quantity, **entry)
         if function.__doc__ is not None:  # as it is under `python -OO`
-            function.__doc__ = completed(function, quantity, uses, geometry, undefined, made.evidence)
+            function.__doc__ = completed(function, quantity, made.uses, made.geometry, undefined, made.evidence)
         kept: dict[str, object] = {name: getattr(function, name) for name in functools.WRAPPER_ASSIGNMENTS}
         vars(made).update(kept, __wrapped__=function)
         return made

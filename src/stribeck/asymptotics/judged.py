@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+from stribeck.asymptotics.formula import Value
 from stribeck.contacts.groups import Groups
 
 
@@ -21,11 +24,16 @@ def ball_at_rest(relative_roughness: float) -> Groups:
     return Groups(0.0, load, load ** (2 / 3) * relative_roughness, geometry="point")
 
 
-def around_contact(groups: Groups) -> tuple[float, float]:
-    """Return the positions over which fields of a dry contact are compared."""
-    return -2.0, 2.0
+def around(place: float, half_width: Callable[[Groups], Value]) -> Callable[[Groups], tuple[float, float]]:
+    """Return the function that gives the positions about a place between which a field is compared."""
+
+    def interval(groups: Groups) -> tuple[float, float]:
+        width = float(half_width(groups))
+        return place - width, place + width
+
+    return interval
 
 
-def inside_contact(groups: Groups) -> tuple[float, float]:
-    """Return the positions over which fields in a contact are compared, away from the layers at its edges."""
-    return -0.9, 0.9
+# Of a dry contact, and inside a contact, away from the layers at its edges.
+AROUND_CONTACT = around(0.0, lambda groups: 2.0)
+INSIDE_CONTACT = around(0.0, lambda groups: 0.9)

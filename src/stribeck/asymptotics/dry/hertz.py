@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.judged import around_contact, line_at_rest
+from stribeck.asymptotics.judged import AROUND_CONTACT, line_at_rest
 from stribeck.contacts.groups import Groups
 from stribeck.solids import hertz
 
@@ -30,7 +30,7 @@ _dry = partial(
     limits=(Limit("speed", 0, 1e-7), Limit("relative_roughness", 0, 1e-4)),
     worst=0.05,
     error_order=1 / 3,
-    interval=around_contact,
+    interval=AROUND_CONTACT,
     source="[BP] Eq. (Hertz)",
 )
 def pressure(groups: Groups, x: Value) -> Value:
@@ -46,7 +46,7 @@ def pressure(groups: Groups, x: Value) -> Value:
     return hertz.pressure(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
 
 
-@_dry(worst=1e-3, interval=around_contact, source="[BP] Eq. (Hertz)")
+@_dry(worst=1e-3, interval=AROUND_CONTACT, source="[BP] Eq. (Hertz)")
 def gap(groups: Groups, x: Value) -> Value:
     r"""Return the gap around the dry contact.
 

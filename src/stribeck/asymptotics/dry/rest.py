@@ -14,7 +14,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula, second
-from stribeck.asymptotics.judged import inside_contact, line_at_rest
+from stribeck.asymptotics.judged import INSIDE_CONTACT, around, line_at_rest
 from stribeck.contacts.groups import Groups
 from stribeck.solids import hertz
 
@@ -27,9 +27,8 @@ def _rougher(inverse: float) -> Groups:
     return Groups(0.0, 1e-6 / inverse, 1e-6 / inverse**2)
 
 
-def _gaussian(groups: Groups) -> tuple[float, float]:
-    width = 3 * math.sqrt(float(groups.relative_roughness))
-    return -width, width
+# Three standard deviations of the pressure.
+_gaussian = around(0.0, lambda groups: 3 * math.sqrt(float(groups.relative_roughness)))
 
 
 _large_indentation = partial(
@@ -48,7 +47,7 @@ _large_indentation = partial(
     undefined="from the edge of the contact outwards, where this has no value",
     worst=0.03,
     steps=(1e-3, 1e-4, 1e-5),
-    interval=inside_contact,
+    interval=INSIDE_CONTACT,
     source="[BP] Eq. (central_region_contact)",
 )
 def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
@@ -62,7 +61,7 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
 
     The second term is ours: the pressure :math:`-\kappa (1 - x^2)^{-1/2}` of next order, whose elastic gap is the first term.
     """
-    kappa, below = groups.relative_roughness, _below(x)
+    kappa, below = groups.relative_roughness, below_one(x)
     leading: Array = -0.5 * kappa * np.log(groups.load * below)
     return leading + second(terms) * np.square(kappa) / below
 
@@ -182,7 +181,7 @@ def contact_pressure_small_indentation(groups: Groups, x: Value, printed: bool =
     return sign * np.sqrt(math.pi / (8 * kappa)) * gaussian
 
 
-def _below(x: Value) -> Array:
+def below_one(x: Value) -> Array:
     """Return 1 - x**2, nan outside the contact."""
     x = np.asarray(x, dtype=float)
     return np.where(np.abs(x) < 1, (1 - x) * (1 + x), np.nan)

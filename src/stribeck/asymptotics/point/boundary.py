@@ -8,22 +8,21 @@ Source: ours, as [BP] Appendix C and D for the line; theory.md, section 11.
 
 from __future__ import annotations
 
-import warnings
 from functools import partial
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.documentation import described
-from stribeck.asymptotics.formula import Limit, OutOfRangeWarning, Value, fluid_number, formula
+from stribeck.asymptotics.formula import Limit, Value, checked_load, fluid_number, formula
 from stribeck.asymptotics.point.logarithm import far_integral
 from stribeck.asymptotics.point.rest import CATALAN
 from stribeck.asymptotics.point.slow_contact import of_gap
 from stribeck.contacts.cut_off import POISEUILLE
-from stribeck.contacts.friction import Definition, check_definition
+from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import checked_word
 
 PhiForm = Literal["quadrature", "closed"]
 
@@ -52,8 +51,6 @@ def phi_of(A: Array, form: PhiForm = "quadrature") -> Array:
     """Return :func:`phi` of a contact by its gap at rest."""
     if form == "quadrature":
         return of_gap(A, lambda contact: contact.share)
-    if form != "closed":
-        raise InputError(f"form = {show(form)}; it must be 'quadrature' or 'closed'.")
     b1, b2, a1, a2 = CLOSED_FORM_COEFFICIENTS
     a3 = b2 * (HEAVY_LIMIT / LIGHT_LIMIT) ** (1 / 3)
     # In 1/A, which does not overflow for very rough contacts.
@@ -82,11 +79,8 @@ def phi(load: Value, form: PhiForm = "quadrature") -> Value:
     :math:`\tfrac{2}{125} A^{-3}` as F -> 1, where the gap closes in the middle, and :math:`\tfrac1{24} A^{-6}` as F ->
     0, reached so slowly that this is 31 % too high at load 1e-30.
     """
-    values = Groups(0.0, load, 0.0, geometry="point").load
-    if np.any(np.greater_equal(values, 1)):
-        message = "phi is undefined (nan) at load groups of 1 or more, where the static contact has no positive gap."
-        warnings.warn(message, OutOfRangeWarning, stacklevel=2)
-    return phi_of(gap_at_rest(values), form)[()]
+    checked_word("form", form, get_args(PhiForm))
+    return phi_of(gap_at_rest(checked_load(load, "point")), form)[()]
 
 
 def edge_factor(load: Value, kappa: Value, coefficients: tuple[float, float, float]) -> Array:
@@ -153,7 +147,6 @@ def viscous_friction(
     The integrals are over the contact at the load of :func:`fluid_load_share`; s and m are fitted.
     """
     lambda_, F, kappa = groups.speed, groups.load, np.asarray(groups.relative_roughness)
-    definition = check_definition(definition)
     if beta == 0:
         return np.zeros(groups.shape)[()]
     A = gap_at_rest(F, kappa)

@@ -17,6 +17,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.constants import BALL_FILM_CONSTANT, FILM_CONSTANT, MINIMUM_CONSTANT
 from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.judged import around
 from stribeck.asymptotics.point.rigid import GAP_COEFFICIENT
 from stribeck.contacts.groups import Groups
 
@@ -32,14 +33,6 @@ SIDE_COEFFICIENTS = (0.6817, 0.9625, 1.0682)
 
 # Fitted coefficients d1 .. d4, n2 .. n4 of :func:`central_gap`.
 BRIDGE_COEFFICIENTS = (-0.35423, -0.055968, -0.05253, 0.094462, 0.53295, -0.10852, -0.0096834)
-
-
-def _smooth(speed: float) -> Groups:
-    return Groups(speed, 1e-3, 0.0, geometry="point")
-
-
-def _inside(groups: Groups) -> tuple[float, float]:
-    return -0.8, 0.8
 
 
 _film = partial(formula, uses=("speed",), plane="smooth", geometry="point", limits=(Limit("speed", 0.0, 1e-2),))
@@ -104,7 +97,7 @@ def film_of(speed: Value) -> Value:
     limits=(Limit("speed", 0.0, 1e-3),),
     undefined="from the edge of the contact outwards, where this has no value",
     worst=0.03,
-    interval=_inside,
+    interval=around(0.0, lambda groups: 0.8),
     source="ours",
 )
 def gap_slow(groups: Groups, x: Value) -> Value:

@@ -23,7 +23,7 @@ from stribeck.asymptotics.point.rest import CATALAN
 from stribeck.asymptotics.point.rigid import GAP_COEFFICIENT
 from stribeck.asymptotics.point.sharing import FIT_RANGE, film_speed_ratio, log_odds, speed_of_share
 from stribeck.contacts.cut_off import POISEUILLE
-from stribeck.contacts.friction import Definition, check_definition
+from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
 
 # Friction integral over lambda**(2/5) of the slow horseshoe, 1.4054.
@@ -89,7 +89,7 @@ def viscous_friction_smooth(
     :func:`smooth_integral` has both limits and seven fitted coefficients.  The error is below 0.1 % at any speed
     while the contact is narrow, :math:`a < R/5`; the stated one is that of load 0.1 at :math:`\beta = 1`.
     """
-    return _coefficient(groups, smooth_integral(groups.speed), beta, check_definition(definition), wetted_radius)[()]
+    return _coefficient(groups, smooth_integral(groups.speed), beta, definition, wetted_radius)[()]
 
 
 _rough = partial(formula, plane="mixed", geometry="point")
@@ -116,7 +116,7 @@ def viscous_friction(
     largest where the viscous part is a small part of all friction; in the median it is 3 %. By the published definition, which
     the moment dominates there, it is 7.5 % at worst and 1.5 % in the median.
     """
-    return _viscous(groups, log_odds(groups), beta, check_definition(definition), wetted_radius)[()]
+    return _viscous(groups, log_odds(groups), beta, definition, wetted_radius)[()]
 
 
 @_rough(
@@ -144,7 +144,7 @@ def friction(
     """
     odds = log_odds(groups)
     share = np.exp(-np.logaddexp(0.0, odds))
-    return (boundary_friction * share + _viscous(groups, odds, beta, check_definition(definition), wetted_radius))[()]
+    return (boundary_friction * share + _viscous(groups, odds, beta, definition, wetted_radius))[()]
 
 
 def _viscous(groups: Groups, odds: Array, beta: float, definition: Definition, wetted_radius: float | None) -> Array:

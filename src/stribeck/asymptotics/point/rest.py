@@ -13,8 +13,9 @@ from functools import partial
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asymptotics.dry.rest import below_one
 from stribeck.asymptotics.formula import Limit, Value, formula, second
-from stribeck.asymptotics.judged import ball_at_rest, inside_contact
+from stribeck.asymptotics.judged import INSIDE_CONTACT, around, ball_at_rest
 from stribeck.asymptotics.smooth.edge_layer import layer
 from stribeck.contacts.groups import Groups
 
@@ -37,11 +38,6 @@ def _rougher(inverse: float) -> Groups:
     return Groups(0.0, load, load ** (2 / 3) / inverse, geometry="point")
 
 
-def _edge(groups: Groups) -> tuple[float, float]:
-    width = float(LAYER_WIDTHS * (math.pi * groups.relative_roughness / 4) ** (2 / 3))
-    return 1 - width, 1 + width
-
-
 _large_indentation = partial(
     formula,
     uses=("load", "relative_roughness"),
@@ -58,7 +54,7 @@ _large_indentation = partial(
 @_large_indentation(
     undefined="from the edge of the contact outwards, where this has no value",
     worst=0.05,
-    interval=inside_contact,
+    interval=INSIDE_CONTACT,
     source="ours",
 )
 def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
@@ -76,8 +72,7 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
     Compared with the solver up to 0.9 of the radius; the edge has a layer of width kappa**(2/3).  Under the first term the
     half-space carries :math:`\kappa p_1` beside Hertz's pressure, by Abel's transform, and a ring at the edge.
     """
-    x = np.asarray(x, dtype=float)
-    below = np.where(np.abs(x) < 1, (1 - x) * (1 + x), np.nan)
+    x, below = np.asarray(x, dtype=float), below_one(x)
     kappa = np.asarray(groups.relative_roughness)
     leading: Array = -kappa * (np.log(groups.load) / 3 + 0.5 * np.log(below))
     if second(terms) == 0:
@@ -134,7 +129,7 @@ _at_edge = partial(
     error_order=2 / 3,
     approach=ball_at_rest,
     steps=(1e-2, 1e-3, 1e-4),
-    interval=_edge,
+    interval=around(1.0, lambda groups: LAYER_WIDTHS * (math.pi * groups.relative_roughness / 4) ** (2 / 3)),
     source="ours, with the edge of the line",
 )
 

@@ -19,9 +19,8 @@ from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.point.boundary import SHARE_EDGE_COEFFICIENTS, phi_of
 from stribeck.asymptotics.point.film import film_of
 from stribeck.asymptotics.point.rest import CATALAN
+from stribeck.asymptotics.rough.load_sharing import odds_of
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.arrays import real_array
-from stribeck.quantities.units import InputError, show
 
 # Range of the states to which the coefficients are fitted.
 FIT_RANGE = (Limit("speed", 1e-9, 1e2), Limit("load", 1e-3, 0.7), Limit("relative_roughness", 3e-4, 1e-1))
@@ -66,10 +65,7 @@ def speed_of_share(groups: Groups, share: Value = 0.5) -> Value:
 
     .. math:: \lambda = \left(\lambda_w^{-m} + \lambda_f^{-m}\right)^{-1/m}
     """
-    wanted = real_array("share", share)
-    if not ((wanted > 0) & (wanted < 1)).all():
-        raise InputError(f"share = {show(share)}; a fraction of the load lies between 0 and 1, both excluded.")
-    odds, F, kappa = np.broadcast_arrays(np.log(wanted / (1 - wanted)), groups.load, groups.relative_roughness)
+    odds, F, kappa = np.broadcast_arrays(odds_of(share), groups.load, groups.relative_roughness)
     found = np.full(odds.shape, math.nan)
     inside = (F < 1) & (kappa > 0) & (kappa <= MAX_ROUGHNESS)
     found[inside] = np.exp(_log_speed(odds[inside], F[inside], kappa[inside])[0])

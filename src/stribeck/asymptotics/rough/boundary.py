@@ -25,7 +25,6 @@ from stribeck.asymptotics.dry.rest import (
 from stribeck.asymptotics.formula import Limit, Value, fluid_number, formula
 from stribeck.asymptotics.rough.perturbation import PhiForm, phi_of, pressure_moment, shear
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.units import InputError, show
 
 __all__ = [
     "central_gap",
@@ -136,8 +135,6 @@ def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "publ
 
     S and M are :func:`stribeck.asymptotics.rough.perturbation.shear` and ``pressure_moment``.
     """
-    if viscous not in ("published", "balanced", "neglected"):
-        raise InputError(f"viscous = {show(viscous)}; it must be 'balanced', 'published' or 'neglected'.")
     F, kappa = groups.load, np.asarray(groups.relative_roughness)
     if viscous == "neglected":
         return np.zeros(groups.shape)

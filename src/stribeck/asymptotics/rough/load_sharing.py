@@ -67,11 +67,17 @@ def speed_at_fluid_share(groups: Groups, share: float = 0.5) -> Value:
 
     The letters are the fitted coefficients of wedge, edge, film and sum.
     """
+    F, kappa = np.asarray(groups.load), np.asarray(groups.relative_roughness)
+    found = np.exp(_log_speed(odds_of(share), F, kappa, phi_of(F, "closed")))
+    return np.where(np.equal(groups.roughness, 0), math.nan, found)[()]
+
+
+def odds_of(share: Value) -> Array:
+    """Return ln X of the part of the load on the fluid; refuse what is none."""
     wanted = real_array("share", share)
     if not ((wanted > 0) & (wanted < 1)).all():
         raise InputError(f"share = {show(share)}; a fraction of the load lies between 0 and 1, both excluded.")
-    found = _speed(np.log(wanted / (1 - wanted)), np.asarray(groups.load), np.asarray(groups.relative_roughness))
-    return np.where(np.equal(groups.roughness, 0), math.nan, found)[()]
+    return np.asarray(np.log(wanted / (1 - wanted)))
 
 
 @formula(
@@ -111,12 +117,8 @@ def gaps(odds: Array, F: Array) -> tuple[Array, Array]:
     return G, G + LOG_SHAPE_RATIO
 
 
-def _speed(odds: Array, F: Array, kappa: Array) -> Array:
-    """Return the speed group for ln X."""
-    return np.exp(_log_speed(odds, F, kappa, phi_of(F, "closed")))
-
-
 def _log_speed(odds: Array, F: Array, kappa: Array, phi: Value) -> Array:
+    """Return the logarithm of the speed for ln X."""
     s1, s2, s3, s4 = SUM_COEFFICIENTS
     G, H = gaps(odds, F)
     m = s1 + s2 * H / (1 + H) + s3 * kappa**s4

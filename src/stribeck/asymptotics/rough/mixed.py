@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 import numpy as np
 import scipy
@@ -20,11 +20,10 @@ from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.smooth.hydrodynamic import central_gap, central_gap_large, friction_large, friction_uniform
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.units import InputError, show
 
 __all__ = ["Film", "contact_load_share", "friction"]
 
-Film = Literal["large", "central", "uniform"]
+Film = Literal["uniform", "central", "large"]
 
 # Coefficients of :func:`contact_load_share`, by smallest maximum error on 243 states of film ratio 3 to 10.
 OUTLET_COEFFICIENTS = (0.37, 0.0072)
@@ -70,7 +69,7 @@ def contact_load_share(groups: Groups, film: Film = "uniform", *, printed: bool 
     loads and film ratios near 3; ``"central"`` from 86 % below to 300 % above, 25 % in the median: without the outlet the
     better central film is of no use.
     """
-    film = _film(film, printed)
+    film = "large" if printed else film
     with np.errstate(all="ignore"):
         if film == "large":
             ratio = np.divide(central_gap_large.function(groups, printed=printed), groups.relative_roughness)
@@ -128,7 +127,7 @@ def friction(
     median; ``"large"`` from 76 % below, as the viscous friction of relative roughness 0.1 is beyond its limit, to 300 % above,
     31 % in the median.
     """
-    film = _film(film, printed)
+    film = "large" if printed else film
     share = contact_load_share.function(groups, film, printed=printed)
     if film == "large":
         return boundary_friction * share + friction_large.function(groups, beta, printed=printed)
@@ -145,12 +144,6 @@ def lambert_w(z: Value, branch: int = 0) -> Array:
     """Return a branch of Lambert's W, nan where it is not real."""
     w: Any = scipy.special.lambertw(np.asarray(z, dtype=complex), branch)
     return np.where(w.imag == 0, w.real, np.nan)
-
-
-def _film(film: Film, printed: bool) -> Film:
-    if film not in get_args(Film):
-        raise InputError(f"film = {show(film)}; it must be 'uniform', 'central' or 'large'.")
-    return "large" if printed else film
 
 
 def _through(groups: Groups, film_ratio: Value) -> Value:

@@ -8,19 +8,19 @@ Source: [BP] Appendix C and D, with the cubes that the former lacks; theory.md, 
 from __future__ import annotations
 
 import math
-import warnings
 from functools import partial
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.documentation import described
-from stribeck.asymptotics.formula import Limit, OutOfRangeWarning, Value, fluid_number, formula
-from stribeck.asymptotics.judged import inside_contact
+from stribeck.asymptotics.dry.rest import below_one
+from stribeck.asymptotics.formula import Limit, Value, checked_load, fluid_number, formula
+from stribeck.asymptotics.judged import INSIDE_CONTACT
 from stribeck.asymptotics.rough.slow_contact import half_logarithm, of_load, outward
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import checked_word
 
 PhiForm = Literal["quadrature", "closed", "asymptote", "power", "printed"]
 
@@ -47,9 +47,7 @@ def phi_of(load: Value, form: PhiForm = "quadrature") -> Value:
         return LIGHT_LIMIT * L**-6
     if form == "power":
         return POWER_COEFFICIENT * L**-5
-    if form == "printed":
-        return 0.5 * L**5
-    raise InputError(f"form = {show(form)}; it must be 'quadrature', 'closed', 'asymptote', 'power' or 'printed'.")
+    return 0.5 * L**5
 
 
 @described(
@@ -76,12 +74,8 @@ def phi(load: Value, form: PhiForm = "quadrature") -> Value:
 
     [BP] lack 2/pi, and print the power with a positive exponent in Eq. (phi_approximation).
     """
-    # Groups know what a load is.
-    values = Groups(0.0, load, 0.0).load
-    if np.any(np.greater_equal(values, 1)):
-        message = "phi is undefined (nan) at load groups of 1 or more, where the static contact has no positive gap."
-        warnings.warn(message, OutOfRangeWarning, stacklevel=2)
-    return phi_of(values, form)
+    checked_word("form", form, get_args(PhiForm))
+    return phi_of(checked_load(load, "line"), form)
 
 
 @described("M [-], of the shape of ``load``; nan from load 1 on.", source="theory.md, section 6, with [BP] Appendix D")
@@ -141,7 +135,7 @@ def flux_gap(groups: Groups) -> Value:
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 1e-4)),
     undefined="from load 1 on",
     worst=0.07,
-    interval=inside_contact,
+    interval=INSIDE_CONTACT,
     source="[BP] Eqs. (first-order_thin-film) and (pf1), which lack the cube that Appendix D has",
 )
 def fluid_pressure_first(groups: Groups, x: Value, printed: bool = False) -> Value:
@@ -179,7 +173,7 @@ def _first_pressure(load: Value, x: Value, power: int = 3) -> Array:
     undefined="outside the contact, where this has no value, and from load 1 on",
     worst=0.06,
     error_order=1,
-    interval=inside_contact,
+    interval=INSIDE_CONTACT,
     source="[BP] Eqs. (central_region_contact) and (h1)",
 )
 def gap_first(groups: Groups, x: Value) -> Value:
@@ -192,9 +186,7 @@ def gap_first(groups: Groups, x: Value) -> Value:
     The part odd in x is the second term.  [BP] print h_1 ~ kappa for 1/kappa, and the step function of p_0 the wrong way
     round.
     """
-    x = np.asarray(x, dtype=float)
-    below = np.where(np.abs(x) < 1, (1 - x) * (1 + x), np.nan)
-    kappa = np.asarray(groups.relative_roughness)
+    below, kappa = below_one(x), np.asarray(groups.relative_roughness)
     H_0 = half_logarithm(groups.load) - 0.5 * np.log(below)
     return kappa * H_0 + groups.speed / kappa * _first_pressure(groups.load, x) / np.sqrt(below)
 
@@ -204,7 +196,7 @@ def gap_first(groups: Groups, x: Value) -> Value:
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 0.01)),
     undefined="from load 1 on",
     worst=0.085,
-    interval=inside_contact,
+    interval=INSIDE_CONTACT,
     source="[BP] Eqs. (pf1), with cubed denominator, and (p2)",
 )
 def fluid_pressure_second(groups: Groups, x: Value) -> Value:

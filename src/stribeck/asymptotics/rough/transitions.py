@@ -23,7 +23,6 @@ from stribeck.asymptotics.rough.weakening import (
     MAX_WEAKENING,
     Criterion,
     Form,
-    checked_form,
     film_ratio_at_minimum,
     has_minimum,
     roughness_without_minimum,
@@ -79,7 +78,7 @@ def separation_at_minimum(
     and 0.6 % in the median; beyond, 6 % at 1e-4, 9 % at 3 and 20 % at 10.  For mu0 = beta = 1 ``"exact"`` and ``"expansion"``
     within 1.1 % and 1.5 % at relative roughness 1e-4, up to 13 % above at 0.01; ``"leading"`` up to 10 % below.
     """
-    form = "expansion" if printed else checked_form(form)
+    form = "expansion" if printed else form
     if form == "uniform":
         speed = speed_at_minimum.function(groups, boundary_friction, beta)
         with np.errstate(all="ignore"):
@@ -119,7 +118,7 @@ def speed_at_minimum(
     median; beyond, 9 % at 1e-4, 10 % at 3 and 27 % at 10.  For mu0 = beta = 1 ``"exact"`` within 1.1 % at relative roughness
     1e-4, up to 35 % above at 0.01; as printed from 14 % below to 12 % above, as its two errors cancel.
     """
-    form = "leading" if printed else checked_form(form)
+    form = "leading" if printed else form
     kappa = groups.relative_roughness
     c = PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT
     if form == "uniform":
@@ -164,7 +163,7 @@ def friction_at_minimum(
 
     [BP] Eq. (minimal_friction) follows from Eqs. (friction_hydro-mixed_transition_dl) and (Lambda_solution).
     """
-    form = "leading" if printed else checked_form(form)
+    form = "leading" if printed else form
     c = PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT
     if form == "uniform":
         speed = speed_at_minimum.function(groups, boundary_friction, beta)

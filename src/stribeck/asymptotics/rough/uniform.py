@@ -18,7 +18,6 @@ from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.rough.load_sharing import FIT_RANGE, film_speed_ratio, gaps, log_odds
 from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.units import InputError, show
 
 Definition = Literal["published", "balanced"]
 
@@ -81,8 +80,6 @@ def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, 
 
 
 def _viscous(groups: Groups, odds: Array, beta: float, definition: Definition) -> Array:
-    if not isinstance(definition, str) or definition not in ("published", "balanced"):
-        raise InputError(f"definition = {show(definition)}; it must be 'balanced' or 'published'.")
     a1, a2, a3, a4 = SHEAR_COEFFICIENTS
     m1, m2, m3, m4, m5 = FIRST_MOMENT_COEFFICIENTS
     b1, b2, b3, b4, b5, b6, b7 = MOMENT_COEFFICIENTS

@@ -22,7 +22,7 @@ from stribeck.asymptotics.rough import mixed
 from stribeck.asymptotics.rough.mixed import lambert_w
 from stribeck.asymptotics.rough.perturbation import phi_of
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import checked_word
 
 __all__ = ["MAX_WEAKENING", "Criterion", "Form", "has_minimum", "roughness_without_minimum", "weakening_number"]
 
@@ -73,7 +73,7 @@ def has_minimum(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.
     The condition on k is necessary and far from sufficient, see :func:`roughness_without_minimum`.
     """
     boundary_friction, beta = coefficient("boundary_friction", boundary_friction), coefficient("beta", beta)
-    if checked_form(form) == "uniform":
+    if checked_word("form", form, get_args(Form)) == "uniform":
         return np.isfinite(film_ratio_at_minimum(groups, boundary_friction, beta))
     return np.asarray(weakening_number(groups, boundary_friction, beta) < MAX_WEAKENING)
 
@@ -126,8 +126,7 @@ def roughness_without_minimum(
     The solver's are :func:`stribeck.regimes.weakening.roughness_without_minimum`.
     The last three assume small relative roughness and are asked where it is not small.
     """
-    if criterion not in get_args(Criterion):
-        raise InputError(f"criterion = {show(criterion)}; it must be 'uniform', 'plateau', 'lines' or 'weakening'.")
+    checked_word("criterion", criterion, get_args(Criterion))
     boundary_friction, beta = coefficient("boundary_friction", boundary_friction), coefficient("beta", beta)
     F = np.asarray(Groups(0.0, load, 0.0).load)
     if criterion == "uniform":
@@ -147,13 +146,6 @@ def roughness_without_minimum(
         k = np.power(ratio, 1 / 3) * np.exp(-ratio)
         found: Value = np.power(9 * c ** (5 / 3) * k * boundary_friction / (2 * beta * np.power(F, 1 / 3)), 1.5)[()]
         return found
-
-
-def checked_form(form: Form) -> Form:
-    """Return the form; refuse an unknown one."""
-    if form not in get_args(Form):
-        raise InputError(f"form = {show(form)}; it must be 'uniform', 'exact', 'expansion' or 'leading'.")
-    return form
 
 
 def _uniform_slopes(load: Value, kappa: Value, boundary_friction: float, beta: float, log_ratio: Value) -> Array:

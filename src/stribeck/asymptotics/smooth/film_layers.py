@@ -15,7 +15,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.judged import smooth_line
+from stribeck.asymptotics.judged import around, smooth_line
 from stribeck.asymptotics.smooth.half_line import HalfLine, Layer
 from stribeck.contacts.groups import Groups
 from stribeck.numerics.newton import Dense, StepControl, root_find
@@ -26,14 +26,11 @@ LAYER_WIDTHS = 5.0  # Distance from the edge [layer widths] to which the fields 
 ORDER_SPEEDS = (1e-5, 1e-6, 1e-7, 1e-8)
 
 
-def _at_inlet(groups: Groups) -> tuple[float, float]:
-    width = float(LAYER_WIDTHS * groups.speed**0.4)
-    return -1 - width, -1 + width
+def _width(groups: Groups) -> Value:
+    return LAYER_WIDTHS * groups.speed**0.4
 
 
-def _at_outlet(groups: Groups) -> tuple[float, float]:
-    width = float(LAYER_WIDTHS * groups.speed**0.4)
-    return 1 - width, 1 + width
+_at_inlet, _at_outlet = around(-1.0, _width), around(1.0, _width)
 
 
 _layer = partial(

@@ -15,6 +15,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.judged import around
 from stribeck.contacts.groups import Groups
 
 FAST_RANGE = (Limit("speed", 1e3),)
@@ -24,10 +25,8 @@ def _at_inverse_speed(inverse: float) -> Groups:
     return Groups(1 / inverse, 0.1, 0.0)
 
 
-def _four_widths(groups: Groups) -> tuple[float, float]:
-    """Return where the fields are compared with the solver: four widths of the pressure to both sides."""
-    half = 4 * float(np.sqrt(central_gap_small.function(groups)))
-    return -half, half
+def _four_widths(groups: Groups) -> Value:
+    return 4 * np.sqrt(central_gap_small.function(groups))
 
 
 _fast = partial(
@@ -73,7 +72,7 @@ def flux_gap_small(groups: Groups) -> Value:
     worst=0.017,
     error_order=1 / 3,
     steps=(1e-7, 1e-6, 1e-5),
-    interval=_four_widths,
+    interval=around(0.0, _four_widths),
     source="[BP] Eq. (fields_small_deformation)",
 )
 def gap_small(groups: Groups, x: float | Array) -> Value:
@@ -95,7 +94,7 @@ def gap_small(groups: Groups, x: float | Array) -> Value:
     worst=0.092,
     error_order=1 / 3,
     steps=(1e-7, 1e-6, 1e-5),
-    interval=_four_widths,
+    interval=around(0.0, _four_widths),
     source="[BP] Eq. (fields_small_deformation); 6 eta U a/(p_Hz u_Hz**2) is lambda",
 )
 def pressure_small(groups: Groups, x: float | Array) -> Value:
