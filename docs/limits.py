@@ -1,13 +1,12 @@
-"""Write the tables of docs/checks.md: the limits by which ``stribeck.checks`` judges, and what helps beyond them.
+"""Write the table of docs/checks.md: the limits by which ``stribeck.checks`` judges.
 
-``python docs/limits.py`` rewrites the tables between the marks of the page; ``tests/test_docs.py`` compares them.
+``python docs/limits.py`` rewrites the table between the marks of the page; ``tests/test_docs.py`` compares them.
 """
 
 import re
 from pathlib import Path
 
 from stribeck.checks import body, film, law
-from stribeck.checks.instead import INSTEAD
 from stribeck.checks.table import ROWS
 from stribeck.contacts.cut_off import FAR_FILM_MIN_RADIUS
 from stribeck.contacts.notes import (
@@ -21,7 +20,7 @@ from stribeck.contacts.notes import (
 from stribeck.quantities.formats import format_si
 
 PAGE = Path(__file__).parent / "checks.md"
-HEAD = ("Check", "Value", "Fine up to", "Outside beyond", "Why, and what to do")
+HEAD = ("Check", "Value", "Fine up to", "Outside beyond", "Why")
 
 
 def rows():
@@ -29,39 +28,38 @@ def rows():
     per_gpa, gel = f"{OIL_COEFFICIENT * 1e9:g} 1/GPa", format_si(body.GEL_MODULUS_PA, "pressure")
     return {
         "inputs": (
-            "factor beyond the usual range of an input", f"{body.USUAL_RANGE_FACTOR:g}", "never",
-            "a slip of a unit; a dry friction above 3",
+            "factor beyond the usual range", f"{body.USUAL_RANGE_FACTOR:g}", "never",
+            "a slip of a unit",
         ),
         "Hertz pressure": (
             r"$\alpha_p \, p_\mathrm{Hz}$", f"{body.STIFFENING_FINE:g}", f"{MAX_PRESSURE_EXPONENT:g}",
-            "[viscosity grows with pressure](when_not_to_use.md#steel-in-oil-pressure-makes-the-fluid-stiff); "
-            f"without `pressure_coefficient` that of an oil, {per_gpa}",
+            "[stiff oil](when_not_to_use.md#steel-in-oil-pressure-makes-the-fluid-stiff); "
+            f"`pressure_coefficient`, else {per_gpa}",
         ),
         "stiffness": (
             "$E^*$", format_si(body.MODULUS_FINE_PA, "pressure"), format_si(body.MODULUS_OUTSIDE_PA, "pressure"),
-            "asperities of metal yield",
+            "metal yields",
         ),
         "contact width": (
             "$a/R$", f"{MAX_CONTACT_SLOPE:g}", f"{body.WIDTH_RATIO_OUTSIDE:g}",
-            "[a parabola on a half-space](#what-a-wide-contact-costs); a note has its cost",
+            "[a parabola on a half-space](#what-a-wide-contact-costs)",
         ),
         "shape": (
-            "steepest slope of a [profile](fluids.md#profiles) in its dry contact", f"{MAX_CONTACT_SLOPE:g}",
-            f"{body.WIDTH_RATIO_OUTSIDE:g}", 'replaces the width; doubtful also with `cavitation = "none"`',
+            "steepest slope of a [profile](fluids.md#profiles)", f"{MAX_CONTACT_SLOPE:g}",
+            f"{body.WIDTH_RATIO_OUTSIDE:g}", 'replaces the width; `cavitation = "none"` is doubtful',
         ),
         "adhesion": (
             r"pull-off force over load: $\tfrac32 \pi w R$ (ball), $\tfrac34 (4 \pi E^* R w^2)^{1/3}$ (cylinder)",
             f"{body.PULL_OFF_FINE:g}", f"{body.PULL_OFF_OUTSIDE:g}",
-            f"`work_of_adhesion` $w$ in the liquid; without it named below $E^*$ = {gel}",
+            f"`work_of_adhesion` $w$; asked for below $E^*$ = {gel}",
         ),
         "pores": (
             r"$U a/D$, $D = k E^*/\eta$", f"{body.PECLET_FINE:g}", f"{body.PECLET_OUTSIDE:g}",
-            "`diffusivity` $D$ or `permeability` $k$: liquid in pores carries load, as in cartilage; without them named "
-            f"below {gel}",
+            f"`diffusivity` $D$ or `permeability` $k$; asked for below {gel}",
         ),
         "layer": (
             "$a$ over `layer_thickness`", f"{body.LAYER_RATIO_FINE:g}", f"{body.LAYER_RATIO_OUTSIDE:g}",
-            "[the substrate counts](when_not_to_use.md#thin-layers-and-wide-contacts)",
+            "[substrate](when_not_to_use.md#thin-layers-and-wide-contacts)",
         ),
         "loss tangent": (
             "`loss_tangent` at $U/a$", f"{body.LOSS_TANGENT_FINE:g}", f"{body.LOSS_TANGENT_OUTSIDE:g}",
@@ -73,7 +71,7 @@ def rows():
         ),
         "stroke": (
             "`stroke`, from stop to stop, over $a$", f"from {film.STROKE_FINE:g}", f"below {film.STROKE_OUTSIDE:g}",
-            "[a stroke is not a row of steady states](when_not_to_use.md#strokes-starts-and-stops)",
+            "[trapped films](when_not_to_use.md#strokes-starts-and-stops)",
         ),
         "viscous heating": (
             r"viscosity lost, $\beta_T \eta (u_1 - u_2)^2/(8 k)$", f"{film.HEATING_FINE:g}", f"{film.HEATING_OUTSIDE:g}",
@@ -81,29 +79,28 @@ def rows():
         ),
         "contact law at the centre": (
             r"gap over $h_\mathrm{rms}$", f"{LAW_RANGE[0]:g} to {LAW_RANGE[1]:g}", f"below {LAW_RANGE[0]:g}",
-            "[range of the exponential law](contact_laws.md), only where asperities matter",
+            "[range of the exponential law](contact_laws.md)",
         ),
         "suction": (
-            "suction behind the contact", format_si(ATMOSPHERE, "pressure"), "never",
+            "pressure below ambient", format_si(ATMOSPHERE, "pressure"), "never",
             "[cavitation](when_not_to_use.md#cavitation-behind-the-contact)",
         ),
         "laws of the fluid": (
-            "number of laws left by the state", "0", "never",
-            "fits of flow factors, laws of viscosity and density in suction, plateaus of power laws",
+            "laws used outside their range", "0", "never", "flow factors, suction, power laws",
         ),
         "film over radius": (
-            "central gap of a ball over $R$", f"{MAX_FILM_SLOPE:g}", "never", "lubrication theory is for thin films",
+            "central gap of a ball over $R$", f"{MAX_FILM_SLOPE:g}", "never", "lubrication theory",
         ),
         "edge of the liquid": (
             "`wetted_radius` of a ball over $a$", f"from {FAR_FILM_MIN_RADIUS:g}", "never",
-            "nearer, films and load shares feel the edge",
+            "films feel the edge",
         ),
         "shear rate": (
             r"$U/h_\mathrm{min}$, or of the sliding speed if larger",
             f"`thinning_rate`, else {film.OIL_THINNING_RATE:.0e} 1/s, or {film.WATER_THINNING_RATE:.0e} 1/s up to "
             f"{1e3 * film.SMALL_MOLECULE_VISCOSITY:g} mPa s",
             f"{film.THINNING_OUTSIDE_RATIO:g} times a given rate",
-            "[thinning](when_not_to_use.md#hot-or-thinning-fluids); presets of water, glycerol and PAO know theirs",
+            "[thinning](when_not_to_use.md#hot-or-thinning-fluids)",
         ),
         "supply": (
             "$h^*/2$ over `supply_film`", f"{film.SUPPLY_FINE:g}", f"{film.SUPPLY_OUTSIDE:g}",
@@ -121,11 +118,11 @@ def rows():
         ),
         "contact law at the minimum": (
             r"gap over $h_\mathrm{rms}$ at the minimum of friction", f"{LAW_RANGE[1]:g}", "never",
-            "few asperities reach that high: the minimum is off [by 10 to 20 %](contact_laws.md#the-tail-decides-the-minimum)",
+            "[few asperities that high](contact_laws.md#the-tail-decides-the-minimum)",
         ),
         "tail of the contact law": (
             "largest move of minimum and transitions", f"{law.TAIL_CHANGE_FINE:.0%}".replace("%", " %"), "never",
-            "stated as their error; without a scan `beta` is known to a factor of 1.3",
+            "[stated as their error](#how-the-tail-is-varied)",
         ),
     }  # fmt: skip
 
@@ -133,27 +130,16 @@ def rows():
 def limits():
     """Return the table of limits, a row for each check in their order."""
     found = rows()
-    return _table(HEAD, ((row.name, *found[row.name]) for row in ROWS))
-
-
-def instead():
-    """Return the table of what helps, a row for each check that names something."""
-    geometries = {None: "", "line": " (cylinder)", "point": " (ball)"}
-    found = ((row.name + geometries[each.geometry], each.sentence) for row in ROWS for each in INSTEAD.get(row.name, ()))
-    return _table(("Check", "What helps"), found)
-
-
-def _table(head, lines):
-    return "".join(f"| {' | '.join(line)} |\n" for line in (head, ("---",) * len(head), *lines))
+    lines = (HEAD, ("---",) * len(HEAD), *((row.name, *found[row.name]) for row in ROWS))
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
 def with_table(text):
-    """Return the text of the page with the tables of now."""
-    for name, table in (("limits", limits()), ("what helps", instead())):
-        marked = re.compile(rf"(<!-- {name} -->\n\n).*?(\n<!-- end of {name} -->)", re.DOTALL)
-        text, count = marked.subn(lambda found, table=table: found[1] + table + found[2], text)
-        if count != 1:
-            raise ValueError(f"{PAGE.name} has {count} places for the table of {name}")
+    """Return the text of the page with the table of now."""
+    marked = re.compile(r"(<!-- limits -->\n\n).*?(\n<!-- end of limits -->)", re.DOTALL)
+    text, count = marked.subn(lambda found: found[1] + limits() + found[2], text)
+    if count != 1:
+        raise ValueError(f"{PAGE.name} has {count} places for the table of limits")
     return text
 
 

@@ -73,7 +73,7 @@ def test_a_stroke_of_forty_half_widths_has_the_friction_of_an_independent_scheme
 
 @pytest.mark.slow
 def test_a_stroke_of_a_thousand_half_widths_has_the_friction_of_the_page():
-    """Of docs/when_not_to_use.md, with a quarter of its steps: the error that such a march states covers the difference."""
+    """Of docs/when_not_to_use.md, there over steady sliding, with a quarter of its steps: the stated error covers the rest."""
     found = stroke(1000)
     assert np.allclose(at_parts(found), [0.2393, 0.0989, 0.0205, 0.1679, 0.0787, 0.0190], rtol=0.01)
     last = found.last_cycle
