@@ -12,7 +12,6 @@ for about ten seconds.
 from __future__ import annotations
 
 import argparse
-import math
 import platform
 import subprocess
 from collections.abc import Iterable, Iterator
@@ -108,35 +107,22 @@ def table(first: str, rows: Iterable[str], columns: dict[str, list[str]]) -> Ite
         yield f"| {name} | {' | '.join(cells)} |"
 
 
-def by_roughness(number: int) -> Iterator[str]:
-    """Yield the rows of the table of unknowns against the width of the edge."""
-    for kappa in 10.0 ** -np.arange(0, number):
-        groups = sb.Groups(0.0, 0.01, 0.01 * kappa)
-        found = [sb.solve(groups, rtol=rtol, on_failure="return") for rtol in (1e-6, 1e-9)]
-        cells = " | ".join(f"{s.nodes} | {s.error_estimate:.1e}" for s in found)
-        yield f"| {kappa:.0e} | {math.log2(1 / kappa):.1f} | {cells} |"
-
-
 def document(number: int = len(STATES)) -> Iterator[str]:
     """Yield the lines of the document, with the tables of the first states."""
     yield "# Convergence"
     yield ""
     yield head()
     yield ""
-    yield "Cells: unknowns, error, and in brackets the estimate that a solution would state. The error is the largest relative"
-    yield "one of load shares (absolute), central and minimum gap, flux gap, offset and both frictions."
+    yield "A cell holds the unknowns, the error, and in brackets the error that a solution would state: the largest relative one of"
+    yield "load shares (absolute), central and minimum gap, flux gap, offset and both frictions."
     chosen = {name: sb.Groups(*numbers) for name, numbers in list(STATES.items())[:number]}
     guesses = {name: exact(groups) for name, groups in chosen.items()}
     truths = {name: observed(guess)[0] for name, guess in guesses.items()}
     yield ""
-    yield "| state | speed | load | roughness |"
-    yield "|---|---:|---:|---:|"
     for name, groups in chosen.items():
-        yield f"| {name} | {groups.speed:g} | {groups.load:g} | {groups.roughness:g} |"
+        yield f"- {name}: speed {groups.speed:g}, load {groups.load:g}, roughness {groups.roughness:g}"
     yield ""
     yield "## More nodes on the same panels"
-    yield ""
-    yield "The panels reach so far that the logarithm in the gap does not show."
     yield ""
     columns = {name: by_order(groups, guesses[name], truths[name]) for name, groups in chosen.items()}
     yield from table("nodes a panel", map(str, ORDERS), columns)
@@ -145,14 +131,6 @@ def document(number: int = len(STATES)) -> Iterator[str]:
     yield ""
     columns = {name: by_tolerance(groups, guesses[name], truths[name]) for name, groups in chosen.items()}
     yield from table("tolerance", (f"{each:.0e}" for each in TOLERANCES), columns)
-    yield ""
-    yield "## Unknowns against the width of the edge"
-    yield ""
-    yield "At rest. Panels halve towards the edge, so their number grows as the logarithm of 1/kappa."
-    yield ""
-    yield "| kappa | log2(1/kappa) | unknowns, rtol 1e-6 | estimate | unknowns, rtol 1e-9 | estimate |"
-    yield "|---:|---:|---:|---:|---:|---:|"
-    yield from by_roughness(number + 3)
 
 
 def main() -> None:

@@ -434,7 +434,7 @@ The two packages are made for two-dimensional rough surfaces resolved point by p
 
 $h(0)/\\lambda^{{3/5}}$ of smooth surfaces; the load does not matter. Errors are differences from `rtol=1e-9`, times processor
 milliseconds of a solve from cold, best of {runs}. As the speed goes to zero it tends to {constant}, from a similarity problem
-solved apart; with the next term of Eq. (13) of [theory.md](../docs/theory.md#7-limits) that is {next} at speed 1e-6.
+solved apart; with the next term of Eq. (10) of [theory.md](../docs/theory.md#7-limits) that is {next} at speed 1e-6.
 
 {films}
 
