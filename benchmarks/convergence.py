@@ -113,8 +113,8 @@ def document(number: int = len(STATES)) -> Iterator[str]:
     yield ""
     yield head()
     yield ""
-    yield "A cell holds the unknowns, the error, and in brackets the error that a solution would state: the largest relative one of"
-    yield "load shares (absolute), central and minimum gap, flux gap, offset and both frictions."
+    yield "A cell holds the unknowns, the error, and in brackets the error that a solution would state: the largest"
+    yield "relative one of load shares (absolute), central and minimum gap, flux gap, offset and both frictions."
     chosen = {name: sb.Groups(*numbers) for name, numbers in list(STATES.items())[:number]}
     guesses = {name: exact(groups) for name, groups in chosen.items()}
     truths = {name: observed(guess)[0] for name, guess in guesses.items()}
