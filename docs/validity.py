@@ -10,6 +10,8 @@ made.  What stands in the page between marks is replaced, all other text is kept
 
 from __future__ import annotations
 
+import json
+import math
 import re
 import sys
 import time
@@ -34,6 +36,8 @@ if TYPE_CHECKING:
 FOLDER = Path(__file__).parent
 PAGE = FOLDER / "validity.md"
 IMAGES = FOLDER / "images"
+WORST = FOLDER.parent / "tests" / "data" / "worst_errors.json"
+"""The largest error of each formula on its map and the state where it is, which tests solve again."""
 
 ABOUT = {"smooth": "smooth", "rest": "at rest", "mixed": "any state", "located": "a curve"} | {
     kind: kind for kind in ("smooth ball", "ball at rest", "any ball")
@@ -51,6 +55,17 @@ SECTIONS = {
     ),
 }
 """Modules of formulas in each table of the page."""
+
+SYMBOLS = {
+    "speed": "λ",
+    "load": "F",
+    "relative_roughness": "κ",
+    "1/speed": "1/λ",
+    "1/relative_roughness": "1/κ",
+    "fluid_number": "n",
+    COEFFICIENT_RATIO: "β/μ<sub>0</sub>",
+}
+"""Parameters of ranges by their symbols; others have their names."""
 
 SHARE_LOADS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 0.7)
 SHARE_KAPPAS = np.logspace(-4, -1, 7)
@@ -72,9 +87,9 @@ def short(value: float) -> str:
 
 
 def percent(value: float) -> str:
-    """Return an error as text with three digits, such as ``0.0213 %``."""
+    """Return an error in per cent as text with three digits, such as ``0.0213``."""
     text = f"{100 * value:.3g}"
-    return f"{short(float(text)) if 'e' in text else text} %"
+    return short(float(text)) if "e" in text else text
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -83,45 +98,51 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
 
+def interval(limit: Limit) -> str:
+    """Return one limit of a range, such as ``F 1e-4…0.7`` or ``κ ≤ 0.01``."""
+    name = SYMBOLS.get(limit.parameter, limit.parameter.replace("_", " "))
+    if name.startswith("1/"):
+        return f"{name[2:]} ≥ {short(1 / limit.high)}"
+    if math.isinf(limit.high):
+        return f"{name} ≥ {short(limit.low)}"
+    return f"{name} {short(limit.low)}…{short(limit.high)}" if limit.low else f"{name} ≤ {short(limit.high)}"
+
+
 def in_words(limits: Iterable[Limit]) -> str:
     """Return a range in words."""
-    text = ", ".join(map(str, limits)).replace("relative roughness", "kappa")
-    return re.sub(r"[0-9.]+e-\d+|\b0\.00\d*", lambda found: short(float(found[0])), text)
+    return ", ".join(map(interval, limits))
 
 
 def goes_as(formula: Formula[Any]) -> str:
     """Return the power of the small parameter as which the error of a formula vanishes; nothing where it does not."""
-    small, order = (
-        formula.small.replace("relative_roughness", "kappa").replace("_", " "),
-        Fraction(formula.error_order).limit_denominator(12),
-    )
-    base = f"({small})" if "/" in small or " " in small else small
-    return f"{base}<sup>{order}</sup>" if small and order != 1 else small
+    if not formula.small:
+        return ""
+    small, order = SYMBOLS[formula.small], Fraction(formula.error_order).limit_denominator(12)
+    if small.startswith("1/"):
+        small, order = small[2:], -order
+    return f"{small}<sup>{order}</sup>" if order != 1 else small
 
 
-def place(data: xarray.Dataset, at: Sequence[int]) -> str:
-    """Return in words which state of a map stands at some indices."""
-    names = {"load": "load", "relative_roughness": "kappa", "speed": "speed"}
-    found = zip(data["error"].dims, at, strict=True)
-    return ", ".join(f"{names[str(name)]} {short(float(data[name].values[i]))}" for name, i in found)
-
-
-def measured(data: xarray.Dataset) -> list[str]:
-    """Return the median error in range, and the largest with the place where it is."""
+def measured(data: xarray.Dataset) -> dict[str, Any]:
+    """Return the median error of a map in the range, and the largest with the state where it is."""
     size = np.where(data["valid"].values, np.abs(data["error"].values), np.nan)
     if not np.isfinite(size).any():
-        return ["", ""]
+        return {}
     at = np.unravel_index(int(np.nanargmax(size)), size.shape)
-    return [percent(float(np.nanmedian(size))), f"{percent(float(size[at]))} at {place(data, [int(i) for i in at])}"]
+    found = zip(data["error"].dims, at, strict=True)
+    place = {str(name): float(short(float(data[name].values[i]))) for name, i in found}
+    return {"median": float(np.nanmedian(size)), "largest": float(f"{size[at]:.3g}"), "at": place}
 
 
-def error_table(section: str, measures: dict[str, Sequence[str]]) -> str:
-    """Return what the formulas of a section state of their errors, and what the grids of their pictures show."""
+def error_table(section: str, measures: dict[str, dict[str, Any]]) -> str:
+    """Return what the formulas of a section state of their errors, and the median over the grids of their pictures."""
     rows = []
     for formula in of_modules(*SECTIONS[section]):
         holds = ", ".join(filter(None, (ABOUT[kind_of(formula)], in_words(formula.limits))))
-        rows.append([f"`{formula.name}`", holds, percent(formula.worst), goes_as(formula), *measures[formula.name]])
-    return table(["Formula", "Holds for", "Error stated", "falls as", "Median", "Largest on the map"], rows)
+        median = measures[formula.name].get("median")
+        usual = "" if median is None else percent(median)
+        rows.append([f"`{formula.name}`", holds, percent(formula.worst), goes_as(formula), usual])
+    return table(["Formula", "Holds for", "Error stated", "falls as", "Median"], rows)
 
 
 def share_maps() -> list[tuple[Formula[Any], xarray.Dataset]]:
@@ -142,9 +163,9 @@ def share_table(maps: list[tuple[Formula[Any], xarray.Dataset]]) -> str:
     for _, data in maps:
         error = data["error"].values
         ends = [f"{percent(float(end))}" for end in (np.nanmin(error), np.nanmax(error))]
-        fluid = "5 %" if "5" in data.attrs["predicts"] else "50 %"
+        fluid = "5" if "5" in data.attrs["predicts"] else "50"
         rows.append([f"`{data.attrs['title']}`", fluid, percent(float(np.nanmedian(np.abs(error)))), *ends])
-    return table(["Formula", "Fluid carries", "Median size", "Smallest error", "Largest error"], rows)
+    return table(["Formula", "fluid carries", "median size", "smallest", "largest"], rows)
 
 
 def ratio_table() -> str:
@@ -156,7 +177,7 @@ def ratio_table() -> str:
         for ratio, error in zip(COEFFICIENT_RATIOS, largest_errors(name, points=RATIO_POINTS)[0], strict=True):
             cells.append(f"**{percent(error)}**" if limit.low <= ratio <= limit.high else percent(error))
         rows.append([f"`{name.partition(',')[0]}`{name.partition(',')[1]}{name.partition(',')[2]}", *cells])
-    return table(["Largest error at beta/mu0 =", *map(short, COEFFICIENT_RATIOS)], rows)
+    return table(["β/μ<sub>0</sub> =", *map(short, COEFFICIENT_RATIOS)], rows)
 
 
 def blocks_of(text: str) -> dict[str, str]:
@@ -201,6 +222,9 @@ def main(wanted: Sequence[str] = ()) -> None:
         plot_error_maps(pairs, path, force=True, title=f"Errors of stribeck.asymptotics.{module}")
     found = {name: measured(data) for name, data in maps.items()}
     blocks = {section: error_table(section, found) for section in SECTIONS if section in made}
+    worst = json.loads(WORST.read_text()) | {name: [each["largest"], each["at"]] for name, each in found.items() if each}
+    lines = [f"  {json.dumps(name)}: {json.dumps(worst[name])}" for name in sorted(worst)]
+    WORST.write_text("{\n" + ",\n".join(lines) + "\n}\n")
     if "shares" in made:
         say("speeds at which the fluid carries a share")
         shares = share_maps()
