@@ -1,19 +1,23 @@
 """Text that the docstrings of formulas share: the descriptions of their arguments and values, written once.
 
-The docstring of a formula states its equation and what is special about it.  Arguments, value, exceptions, range, error and
-source are filled in from its signature, its table entry, and the tables here; an argument that a formula describes itself is
-left as it is.
+The docstring of a formula states its equation; below stand the arguments that it describes itself, ``name : words``, and then
+its notes.  Headings, other arguments, value, exceptions, range, error and source are filled in from its signature, its table
+entry, and the tables here.
 """
 
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Callable
 from typing import Any, Literal, TypeVar, get_args, get_origin
 
 from stribeck.quantities import docstrings
 
 F = TypeVar("F", bound=Callable[..., Any])
+
+_EQUATION = re.compile(r"^\.\. math::.*\n(?:\s*\n| {4}.*\n)*", re.MULTILINE)
+_ARGUMENT = re.compile(r"(\w+) :(?: (.*))?\n((?: {4}.*\n)*)")
 
 ARGUMENTS: dict[str, str] = {
     "x": "Positions [a]; broadcast with the groups.",
@@ -29,7 +33,7 @@ ARGUMENTS: dict[str, str] = {
     "order": "Nodes on each panel.",
     "share": "Part of the load on the fluid [-], between 0 and 1.",
     "form": "Form of :func:`phi`.",
-    "printed": "As the article prints it, see :func:`fluid_load_share`.",
+    "printed": "Whether with the constant 0.44 as printed.",
     "definition": "The force on the flat; or with the moment of the fluid pressure, by the definition of the article.",
     "viscous": "The same definitions, or without viscous friction.",
     "wetted_radius": "Where the liquid ends [a]; by default that of a whole sphere, :mod:`stribeck.contacts.cut_off`.",
@@ -128,7 +132,24 @@ def _filled(function: Callable[..., Any], words: dict[str, str], returns: str, r
         for name, argument in names.items()
     }
     refused = refused or "\n".join(f"InputError\n    {ERRORS[name]}" for name in names if name in ERRORS)
+    function.__doc__ = _with_headings(function)
     return docstrings.complete_docstring(function, common, returns, refused, notes)
+
+
+def _with_headings(function: Callable[..., Any]) -> str:
+    """Return a docstring in which what stands below the equation has headings, unless it has some."""
+    text = f"{inspect.getdoc(function)}\n"
+    equation = _EQUATION.search(text)
+    if equation is None or re.search(r"^--+$", text, re.MULTILINE):
+        return text
+    arguments, below = "", text[equation.end() :]
+    while own := _ARGUMENT.match(below):
+        kind = _kind(function, inspect.signature(function).parameters[own[1]])
+        words = f"    {own[2]}\n" if own[2] else own[3]
+        arguments, below = f"{arguments}{own[1]} : {kind}\n{words}", below[own.end() :]
+    sections = {"Parameters": arguments, "Notes": below.strip()}
+    headed = [f"{title}\n{'-' * len(title)}\n{each}" for title, each in sections.items() if each]
+    return "\n".join([text[: equation.end()], *headed])
 
 
 def _kind(function: Callable[..., Any], argument: inspect.Parameter) -> str:

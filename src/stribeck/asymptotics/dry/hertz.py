@@ -38,8 +38,6 @@ def pressure(groups: Groups, x: Value) -> Value:
 
     .. math:: p = (1 - x^2)^{1/2}
 
-    Notes
-    -----
     The error is that at the edge, where the true pressure goes as kappa**(1/3) or lambda**(1/5); at fixed distance from the
     edge it falls as kappa.
     """
@@ -52,8 +50,6 @@ def gap(groups: Groups, x: Value) -> Value:
 
     .. math:: h = \tfrac12 \left[|x| \sqrt{x^2 - 1} - \ln\left(|x| + \sqrt{x^2 - 1}\right)\right] \text{ beyond } |x| = 1
 
-    Notes
-    -----
     Zero in the contact.  The error is relative to the largest gap within two half-widths; it is of order kappa,
     with logarithms, or lambda**(3/5).
     """

@@ -55,8 +55,6 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
 
     .. math:: h = -\frac\kappa2 \ln\left[\bar F_N (1 - x^2)\right] \; \left(+ \frac{\kappa^2}{1 - x^2}\right)
 
-    Notes
-    -----
     Compared with the solver up to 0.9 of the half-width; the edge has a layer of width kappa**(2/3).
 
     The second term is ours: the pressure :math:`-\kappa (1 - x^2)^{-1/2}` of next order, whose elastic gap is the first term.
@@ -72,8 +70,6 @@ def central_gap(groups: Groups, terms: int = 1) -> Value:
 
     .. math:: h(0) = -\frac\kappa2 \ln \bar F_N \; (+ \kappa^2)
 
-    Notes
-    -----
     With both terms the error is -2.67 kappa**4, as measured.
     """
     return gap.function(groups, 0.0, terms)
@@ -85,8 +81,6 @@ def offset(groups: Groups, terms: int = 1) -> Value:
 
     .. math:: z_0 = -\frac{1 + \ln 4}{4} + \kappa \left(\ln 2 - \tfrac12 \ln \bar F_N\right) \; (+ \tfrac13 \kappa^2)
 
-    Notes
-    -----
     The energy of the contact per kappa**2 holds :math:`\tfrac\pi6 \ln(\kappa u_\mathrm{Hz})`, the logarithm of the pressure at
     the edge times the load there; its derivative with respect to the load is the second term.  With both terms the error is
     -0.178 kappa**4, as measured.
@@ -116,8 +110,6 @@ def gap_small_indentation(groups: Groups, x: Value, terms: int = 1) -> Value:
 
     .. math:: h = -\frac\kappa2 \ln \frac{\pi \bar F_N}{8 \kappa} \; \left(+ \tfrac14 \ln 2\right) + \frac{x^2}{2}
 
-    Notes
-    -----
     Compared with the solver up to three standard deviations of the pressure, :math:`3 \kappa^{1/2}`.
     The second term is right at x = 0.
     """
@@ -133,8 +125,6 @@ def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
 
     .. math:: h(0) = -\frac\kappa2 \ln \frac{\pi \bar F_N}{8 \kappa} \; \left(+ \tfrac14 \ln 2\right)
 
-    Notes
-    -----
     The second term is the deflection under the Gaussian pressure, averaged over it, less that at the centre.
     """
     kappa = np.asarray(groups.relative_roughness)
@@ -148,8 +138,6 @@ def offset_small_indentation(groups: Groups) -> Value:
 
     .. math:: z_0 = -\frac\kappa2 \ln \frac{\pi \bar F_N}{8 \kappa} + \tfrac14 \ln \kappa - \tfrac14 \gamma_E
 
-    Notes
-    -----
     The central gap with both terms, less the deflection :math:`-\tfrac12 \langle \ln |y| \rangle` under a Gaussian of
     variance kappa.
     """
@@ -170,10 +158,7 @@ def contact_pressure_small_indentation(groups: Groups, x: Value, printed: bool =
 
     .. math:: p_c = \left(\frac{\pi}{8 \kappa}\right)^{1/2} e^{-x^2/(2 \kappa)}
 
-    Parameters
-    ----------
-    printed : bool
-        With the minus sign that is printed.
+    printed : With the minus sign that is printed.
     """
     kappa = np.asarray(groups.relative_roughness)
     sign = -1.0 if printed else 1.0

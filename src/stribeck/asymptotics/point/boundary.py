@@ -73,8 +73,6 @@ def phi(load: Value, form: PhiForm = "quadrature") -> Value:
         \phi_\mathrm{closed} &= \frac{2}{125 A^3} \left[\frac{1 + b_1 A + b_2 A^2}{1 + a_1 A + a_2 A^2 + a_3 A^3}\right]^3,
         \quad A = -\tfrac13 \ln \bar F_N
 
-    Notes
-    -----
     The quadrature is good to 1e-11.  The closed form is within 0.25 % of it for loads 1e-300 to 0.997; it has both limits,
     :math:`\tfrac{2}{125} A^{-3}` as F -> 1, where the gap closes in the middle, and :math:`\tfrac1{24} A^{-6}` as F ->
     0, reached so slowly that this is 31 % too high at load 1e-30.
@@ -101,13 +99,8 @@ def fluid_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = "q
         \frac{F_f}{F_N} = \frac{\lambda^2}{\kappa^4} \, \phi\left(\bar F_N e^{-3 (\frac12 + G) \kappa}\right)
         \left[1 + (3.779 A + 1.267 A^2 - 2.143) \, \kappa^{2/3}\right], \qquad A = -\tfrac13 \ln \bar F_N
 
-    Parameters
-    ----------
-    with_edges : bool
-        Whether with the bracket and the exponential, which go to one as kappa goes to zero.
+    with_edges : Whether with the bracket and the exponential, which go to one as kappa goes to zero.
 
-    Notes
-    -----
     G is Catalan's constant, of the gap in the middle at rest.  Without the edges the limit is reached slowly: at load
     1e-3 the true share is larger by 2.5 % at kappa = 1e-4, 12 % at 1e-3, 54 % at 0.01 and 245 % at 0.1, as the fluid
     acts under the edges too. With them it is within 4 % for kappa up to 0.03.
@@ -142,8 +135,6 @@ def viscous_friction(
         M = \left[1 + m \kappa^{2/3}\right] \pi \int_0^1 r^2 P_1 \, dr \\
         s &= 1.566 + 4.399 A - 0.658 A^2, \quad m = 7.554 A + 0.835 A^2 - 0.845
 
-    Notes
-    -----
     The integrals are over the contact at the load of :func:`fluid_load_share`; s and m are fitted.
     """
     lambda_, F, kappa = groups.speed, groups.load, np.asarray(groups.relative_roughness)

@@ -46,13 +46,8 @@ def central_gap_slow(groups: Groups, leakage: bool = True) -> Value:
 
         h(0) = c \lambda^{3/5} \left(1 + \pi c^2 \lambda^{1/5}\right)^{-1/2}, \qquad c = 0.424803
 
-    Parameters
-    ----------
-    leakage : bool
-        Whether with the flow to the sides, the bracket.
+    leakage : Whether with the flow to the sides, the bracket.
 
-    Notes
-    -----
     In SI :math:`h = 1.696 \, R \, (\eta U/E^* R)^{3/5} (F_N/E^* R^2)^{-2/15}` times the bracket.  With leakage the error is
     within 0.1 % for speeds up to 1e-4, -1.3 % at 0.01 and -3.9 % at 0.1; without it goes as :math:`\tfrac\pi2 c^2
     \lambda^{1/5}`, 1.8 % even at speed 1e-6.
@@ -71,8 +66,6 @@ def central_gap(groups: Groups) -> Value:
         {1 + d_1 u + d_2 u^2 + d_3 u^3 + d_4 u^4}\right]^{1/2}, \quad u = \lambda^{1/5},
         \quad K = \left(\frac{0.18162}{c}\right)^2
 
-    Notes
-    -----
     As the speed tends to zero it is :func:`central_gap_slow`, as it tends to infinity the gap of the rigid ball,
     :mod:`stribeck.asymptotics.point.rigid`; in between :math:`d_1 \dots d_4, n_2 \dots n_4` = -0.35423, -0.055968, -0.05253,
     0.094462, 0.53295, -0.10852, -0.0096834 are fitted.  Largest error 0.09 % at 49 speeds from 1e-6 to 1e4.
@@ -108,8 +101,6 @@ def gap_slow(groups: Groups, x: Value) -> Value:
         h = q - \frac{q^3}{\lambda} \frac{x}{(1-x^2)^{1/2}}, \qquad
         q = c \lambda^{3/5} \left[1 + 2 c^2 \lambda^{1/5} \left(\arcsin x + \tfrac\pi2\right)\right]^{-1/2}
 
-    Notes
-    -----
     Compared with the solver up to 0.8 of the radius; inlet and outlet are :math:`\lambda^{2/5}` wide.
     """
     x = np.where(np.abs(x) < 1, x, np.nan)
@@ -127,8 +118,6 @@ def minimum_gap_on_axis(groups: Groups) -> Value:
         h = 0.75801 \, c \lambda^{3/5} \, f^{\, 0.8283 - 0.078 \ln f}, \qquad
         f = \left(1 + 2\pi c^2 \lambda^{1/5}\right)^{-1/2}
 
-    Notes
-    -----
     f is the film that reaches the outlet over that of the inlet.  Below by 0.07 % at speed 1e-6, 0.3 % at 1e-4, 1.7 %
     at 0.01.  The limit over the central film, 0.75801, is far: it is 0.750, 0.741, 0.720 at these speeds.
     """
@@ -145,8 +134,6 @@ def minimum_gap(groups: Groups) -> Value:
 
     .. math:: h = \frac{0.6817 \, \lambda^{3/4}}{1 + 0.9625 \, \lambda^{1/4} + 1.0682 \, \lambda^{1/2}}
 
-    Notes
-    -----
     The power 3/4 is derived, the three coefficients are fitted, within 1.5 % over the range.  The local exponent is
     0.735 to 0.745 at speeds 1e-4 to 1e-6.
     """

@@ -44,8 +44,6 @@ def pressure(groups: Groups, x: Value) -> Value:
 
     .. math:: p = (1 - x^2)^{1/2}
 
-    Notes
-    -----
     The error is that at the edge, where the true pressure goes as kappa**(1/3) or lambda**(1/5).
     """
     return hertz.pressure(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
@@ -57,8 +55,6 @@ def gap(groups: Groups, x: Value) -> Value:
 
     .. math:: h = \frac1\pi \left[(x^2 - 2) \arccos\frac1{|x|} + (x^2 - 1)^{1/2}\right] \text{ beyond } |x| = 1
 
-    Notes
-    -----
     Zero in the contact.  The error is relative to the largest gap within two radii; it is of order kappa, with logarithms, or
     lambda**(3/5).
     """
@@ -79,8 +75,6 @@ def offset(groups: Groups) -> Value:
 
     .. math:: z_0 = -1
 
-    Notes
-    -----
     Unlike on the line there is no gauge: the surface far away stands still.
     """
     return np.full(groups.shape, HERTZ_OFFSET)[()]

@@ -27,10 +27,7 @@ def far_integral(slope: Value, wetted_radius: Value | None = None, film: Value =
 
     .. math:: \tfrac{16}{15} \pi \ln X + \tfrac{8}{15} \pi \ln(1 + y) + \tfrac25 \pi \frac{y}{1 + y}, \quad y = 2 h(0)/X^2
 
-    Parameters
-    ----------
-    film : float or array_like
-        Gap in the middle h(0) [u_Hz], which counts where it is no longer thin beside the gap at X.
+    film : Gap in the middle h(0) [u_Hz], which counts where it is no longer thin beside the gap at X.
     """
     radius: Value = math.inf
     if wetted_radius is not None:

@@ -43,8 +43,6 @@ def hamrock_dowson_soft(groups: Groups, slope: float = 0.1) -> Value:
 
     .. math:: H = 7.32 \, (1 - 0.72 e^{-0.28}) \, U_\mathrm{HD}^{0.64} W_\mathrm{HD}^{-0.22}
 
-    Notes
-    -----
     Its exponent 0.64 is that of a range of light loads; the exact one is 3/5 for slow speed.  At a/R = 0.1 from 31 %
     below at speed 1e-5 to 28 % above at 10; it goes as :math:`(a/R)^{-0.1}`.
     """
@@ -64,8 +62,6 @@ def de_vicente(groups: Groups, slope: float = 0.1) -> Value:
 
     .. math:: H = 3.3 \, U_\mathrm{HD}^{0.60} W_\mathrm{HD}^{-0.14}
 
-    Notes
-    -----
     Its exponents are nearly the exact ones, 3/5 and -2/15.  At a/R = 0.1 between 0.7 % below at speed 1e-6 and 10 %
     above at 0.5; it goes as :math:`(a/R)^{-0.02}`.
     """
@@ -89,8 +85,6 @@ def nijenbanning_venner_moes(groups: Groups) -> Value:
         H_\mathrm{RI} &= 145 \cdot 1.796^{-15/7} M^{-2}, \qquad H_\mathrm{EI} = 3.18 \cdot 1.63^{-14/25} M^{-2/15}, \qquad
         H_{00} = 1.8
 
-    Notes
-    -----
     Between 4 and 8 % above the solver.  Its branch of the rigid ball is that with cavitation, which carries load without any
     deflection: from speed 0.5 on the film without cavitation is thinner and thinner beside it.
     """

@@ -67,8 +67,6 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
         p_1 = -\frac{1}{(1-x^2)^{1/2}} - \frac12 \int_x^1 \frac{g'(t) \, dt}{(t^2-x^2)^{1/2}}, \quad
         g(t) = -1 + \frac{t \arcsin t - \pi/2}{(1-t^2)^{1/2}}
 
-    Notes
-    -----
     Compared with the solver up to 0.9 of the radius; the edge has a layer of width kappa**(2/3).  Under the first term the
     half-space carries :math:`\kappa p_1` beside Hertz's pressure, by Abel's transform, and a ring at the edge.
     """
@@ -87,8 +85,6 @@ def central_gap(groups: Groups, terms: int = 1) -> Value:
 
     .. math:: h(0) = -\frac\kappa3 \ln \bar F_N \; \left(+ \left[\tfrac12 + G\right] \kappa^2\right), \quad G = 0.915966
 
-    Notes
-    -----
     With both terms the error is 0.0002 kappa at kappa = 0.01 and falls as kappa**3 and its logarithm.
     """
     kappa = np.asarray(groups.relative_roughness)
@@ -106,8 +102,6 @@ def offset(groups: Groups, terms: int = 1) -> Value:
         z_0 = -1 + \kappa \left(1 - \tfrac13 \ln \bar F_N\right) \;
         \left(+ \kappa^2 \left[0.6532 - \frac{\pi^2}{48} \ln \kappa\right]\right)
 
-    Notes
-    -----
     The ring at the edge has an energy, :math:`\tfrac{\pi^3}{24} \kappa^2 \ln \kappa`, whose derivative with respect to
     the load is the logarithm; the other number is measured.
     """
@@ -143,8 +137,6 @@ def edge_gap(groups: Groups, x: Value) -> Value:
         h = \kappa \left[-\tfrac13 \ln F - \tfrac13 \ln\frac{\pi\kappa}{4} + H(\xi)\right], \qquad
         \xi = \frac{|x| - 1 + \kappa}{(\pi\kappa/4)^{2/3}}
 
-    Notes
-    -----
     H is the layer of the line, :func:`stribeck.asymptotics.smooth.edge_layer.layer`.  Compared within 5 widths of the edge.
     """
     kappa = groups.relative_roughness
@@ -159,8 +151,6 @@ def edge_contact_pressure(groups: Groups, x: Value) -> Value:
     .. math:: p_c = \left(\frac{\pi\kappa}{4}\right)^{1/3} e^{-H(\xi)}, \qquad
         \xi = \frac{|x| - 1 + \kappa}{(\pi\kappa/4)^{2/3}}
 
-    Notes
-    -----
     Compared with the solver within 5 widths of the edge.
     """
     kappa = groups.relative_roughness
@@ -189,8 +179,6 @@ def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
         h(0) = \kappa \ln\left(3 \kappa \bar F_N^{-1/3}\right) \;
         \left(+ \frac{4 - 2 \sqrt2}{3 (2 \pi \kappa)^{1/2}}\right)
 
-    Notes
-    -----
     The pressure is Gaussian, :math:`e^{-r^2/(2\kappa)}/(3\kappa)`, on the rigid ball; the second term is the deflection in the
     middle less its mean over that pressure.
     """
@@ -205,8 +193,6 @@ def offset_small_indentation(groups: Groups) -> Value:
 
     .. math:: z_0 = \kappa \ln\left(3 \kappa \bar F_N^{-1/3}\right) - \frac{2}{3 (\pi \kappa)^{1/2}}
 
-    Notes
-    -----
     The gap of the rigid ball less the mean of its deflection over the pressure.
     """
     kappa = np.asarray(groups.relative_roughness)

@@ -54,8 +54,6 @@ def minimum_gap(groups: Groups) -> Value:
 
     .. math:: h_0 = \left(\frac{81 \pi}{12800 \sqrt2}\right)^{2/5} \lambda^{4/5} = 0.18162 \, \lambda^{4/5}
 
-    Notes
-    -----
     In other words :math:`F_N E^* h_0^{5/2} = \tfrac{243 \pi^3}{3200 \sqrt2} \, \eta^2 U^2 R^{5/2}`, with 1.6649.  The
     gap in the middle is larger by the deflection under the load, 3.5 % at speed 100.
     """
@@ -70,13 +68,8 @@ def fluid_pressure(groups: Groups, x: Value) -> Value:
 
     .. math:: p_f = -\frac{\lambda x}{5 h^2}, \qquad h = h_0 + \frac{x^2}{2}
 
-    Parameters
-    ----------
-    x : float or array_like
-        Positions [a]; off the middle at x, y the same with :math:`h_0 + (x^2 + y^2)/2`.
+    x : Positions [a]; off the middle at x, y the same with :math:`h_0 + (x^2 + y^2)/2`.
 
-    Notes
-    -----
     Compared with the solver within three of its widths, :math:`h_0^{1/2}`.  The part even in x, which carries
     the load, is smaller by :math:`\lambda/h_0^2`.
 

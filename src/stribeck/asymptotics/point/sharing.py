@@ -52,8 +52,6 @@ def contact_load_share(groups: Groups) -> Value:
 
     .. math:: \lambda(S) = \left(\lambda_w^{-m} + \lambda_f^{-m}\right)^{-1/m}
 
-    Notes
-    -----
     S is 1 at rest and 0 without roughness.  The inverse of :func:`speed_of_share`, by bracketed steps in ln X.
     """
     return np.exp(-np.logaddexp(0.0, log_odds(groups)))[()]

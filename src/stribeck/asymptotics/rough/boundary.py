@@ -76,16 +76,11 @@ def fluid_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bool
 
     .. math:: \frac{F_f}{F_N} = \frac{\lambda^2}{\kappa^4} \, \phi(\bar F_N)
 
-    Parameters
-    ----------
-    form : {"quadrature", "closed", "asymptote", "power", "printed"}
-        Form of :func:`stribeck.asymptotics.rough.perturbation.phi`; "printed" is :math:`(-\ln \bar F_N)^5/2`.
-    printed : bool
+    form : Form of :func:`stribeck.asymptotics.rough.perturbation.phi`; "printed" is :math:`(-\ln \bar F_N)^5/2`.
+    printed :
         With the factors of Eq. (fluid-normal): pi**2, as :math:`6 \pi \eta U a` is printed for :math:`6 \eta U a`, and phi
         without its 2/pi.
 
-    Notes
-    -----
     With ``printed=True, form="printed"`` it is the formula of [BP] as printed.  The error, of order kappa**(2/3) with
     logarithms, comes from the edge of the contact, which is a layer of that width.
     """
@@ -111,8 +106,8 @@ def contact_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bo
 
     .. math:: \frac{F_c}{F_N} = 1 - \frac{\lambda^2}{\kappa^4} \, \phi(\bar F_N)
 
-    Notes
-    -----
+    printed : As the article prints it, see :func:`fluid_load_share`.
+
     Negative where the formula has long ceased to hold.
     """
     return 1 - fluid_load_share.function(groups, form, printed)
@@ -128,8 +123,6 @@ def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "publ
         \mu_f^\mathrm{published} &= \mu_f^\mathrm{balanced}
         + \frac{4 \beta \bar F_N^{1/2}}{\pi} \frac{\lambda}{\kappa^2} M(\bar F_N)
 
-    Notes
-    -----
     [BP] state only that it goes as :math:`\eta U a/(F_N h_\mathrm{rms})`, which is true of the balanced definition; by their
     own it is larger by :math:`6 M/(S \kappa)`, 0.0701/kappa at load 0.1.
 
@@ -162,13 +155,8 @@ def friction(
 
     .. math:: \mu = \mu_0 \left(1 - \frac{\lambda^2}{\kappa^4} \, \phi(\bar F_N)\right) + \mu_f
 
-    Parameters
-    ----------
-    printed : bool
-        As in :func:`fluid_load_share`; what is printed has the viscous part neglected too.
+    printed : As in :func:`fluid_load_share`; what is printed has the viscous part neglected too.
 
-    Notes
-    -----
     The error, 1.4 % at most, is that of the asperities' part up to beta/mu0 = 3; at 10 the viscous part makes it 4.2 %.
     [BP] Eq. (friction_contact) is ``viscous="neglected"``.  In the paper's own definition the neglected part is of first order
     in the speed, and the load share of second.

@@ -77,8 +77,6 @@ def slow_film_with_free_exit(speed: Value) -> SmoothFilm:
 
     .. math:: h(0) = c \lambda^{3/5}, \quad h_\mathrm{min} = 0.7962 \, h(0), \quad x_c = 1 + 0.16406 \, \lambda^{2/5}
 
-    Notes
-    -----
     c = 0.44583 is that of the full film, as the inlet makes it.  Of solved states the central gap is higher by 0.25 % at speed
     1e-5, 1.6 % at 1e-3 and 4 % at 0.01, the way of the exit shorter by 2, 10 and 22 % (``test_free_exit_law.py``).
     """
@@ -98,8 +96,6 @@ def rigid_film_with_free_exit(speed: Value) -> SmoothFilm:
 
     .. math:: h(0) = h_\mathrm{min} = \frac{2.44748}{3 \pi} \lambda, \quad x_c = 0.47513 \, [2 h(0)]^{1/2}
 
-    Notes
-    -----
     The flux gap is :math:`1.22575 \, h(0)`.  Of solved states gaps are higher by 1.1 % at speed 100 and by 0.11 % at 1000, and
     the exit lies farther out by 3 and 0.3 % (``test_free_exit_law.py``).
     """
@@ -129,8 +125,6 @@ def boundary_film_with_free_exit(load: float) -> FreeExit:
         \int_{-1}^{x_c} \frac{H - H^*}{H^3} \, dx = 0, \quad H(x_c) = H^*, \quad
         H = -\tfrac12 \ln\left[\bar F_N (1 - x^2)\right]
 
-    Notes
-    -----
     For relative roughness to zero at :math:`\lambda/\kappa^2 \ll 1`; of a state at load 0.1 the share is 4 % higher at
     relative roughness 1e-3 and 24 % at 1e-2 (``test_free_exit_law.py``).
     """

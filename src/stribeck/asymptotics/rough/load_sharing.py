@@ -59,8 +59,6 @@ def speed_at_fluid_share(groups: Groups, share: float = 0.5) -> Value:
         \lambda_f &= \lambda_\mathrm{film}(\kappa H) \left(1 + p_1 \kappa^{p_2} H^{p_3}\right)
         \left(1 + p_5 \kappa^{p_6} H^{p_7}\right)^{p_4/(1 + p_8 (\kappa H)^{p_9})}
 
-    Notes
-    -----
     For half of the load within 10 %, in the median 0.9 %; for 5 % of it within 27 % and 0.8 %, the worst at heavy loads and
     the largest roughness. The criterion :math:`\lambda^2 \phi/\kappa^4 = 1` of [BP], where the true share is 0.13 to 0.46,
     is the first order extrapolated.
@@ -88,8 +86,6 @@ def contact_load_share(groups: Groups) -> Value:
 
     .. math:: \lambda(1 - S) = \lambda
 
-    Notes
-    -----
     S is 1 at rest and 0 without roughness.  The inversion, by bracketed Newton steps in ln X, is converged to rounding.
     """
     return np.exp(-np.logaddexp(0.0, log_odds(groups)))[()]

@@ -52,17 +52,12 @@ def contact_load_share(groups: Groups, film: Film = "uniform", *, printed: bool 
         S = \frac{\lambda^{1/5}}{b} W_0\!\left(\frac{b S_0}{\lambda^{1/5}}\right), \quad
         S_0 = S_\mathrm{central} \left(1 + 0.37 \lambda^{3/5} + 0.0072 \Lambda^{8/3} \lambda^{2/5}\right)
 
-    Parameters
-    ----------
-    film : {"uniform", "central", "large"}
+    film :
         Film that the asperities meet: ``"large"``, as [BP], the limit of slow speed; ``"central"``, the same with
         :func:`~stribeck.asymptotics.hydrodynamic.central_gap`; ``"uniform"``, with the thinner outlet and with the thickening
         of the film by the asperities.
-    printed : bool
-        Whether ``film="large"`` with the constant 0.44 as printed.
+    printed : Whether ``film="large"`` with the constant 0.44 as printed.
 
-    Notes
-    -----
     b = 0.45 and n = 1.85; the terms in the bracket are the outlet, from quadratures over smooth films.  Against the solver, in
     the range: ``"uniform"`` within 11.2 %, 1.5 % in the median, worst at film ratio 10 and relative roughness 0.035;
     ``"large"`` from 10 % below to 300 % above, 14 % in the median, and above where asperities thicken the film, at light
@@ -104,17 +99,12 @@ def friction(
         \mu_\mathrm{uniform} &= \mu_0 S_\mathrm{uniform} + \mu_{f,\mathrm{uniform}}
         + \frac\pi2 \beta c^2 \bar F_N^{1/2} \Lambda \lambda^{1/5} S_\mathrm{uniform}
 
-    Parameters
-    ----------
-    film : {"uniform", "central", "large"}
+    film :
         Film that the asperities meet, see :func:`contact_load_share`, and law of the viscous friction:
         :func:`~stribeck.asymptotics.hydrodynamic.friction_large` for ``"large"``, else
         :func:`~stribeck.asymptotics.hydrodynamic.friction_uniform`.
-    printed : bool
-        Whether ``film="large"`` with the constant 0.44 as printed.
+    printed : Whether ``film="large"`` with the constant 0.44 as printed.
 
-    Notes
-    -----
     By the definition of [BP].  The last term of ``"uniform"`` stands for what that definition leaves out, the projection of
     the contact pressure on the slope of the cylinder (theory.md, section 6): along the film
     :math:`h = h^* - c^2 \lambda^{1/5} h^* x/(1-x^2)^{1/2}`, so that the contact pressure leans towards the outlet.

@@ -65,8 +65,6 @@ def phi(load: Value, form: PhiForm = "quadrature") -> Value:
         \phi_\mathrm{closed} &= \frac{2}{3 L^{7/2}}
         \left[\frac{1 + b_1 L + b_2 L^2}{1 + a_1 L + a_2 L^2 + a_3 L^3}\right]^{5/2}, \quad L = -\ln \bar F_N
 
-    Notes
-    -----
     The quadrature is good to 1e-12 for loads 1e-300 to 0.999999.  The closed form is within 0.33 % of it for all these; it has
     both limits, :math:`\tfrac23 L^{-7/2}` as F -> 1, where phi diverges as the gap closes at x = 0, and the asymptote as
     F -> 0.  That is reached so slowly that it is 2.5 times too high at load 1e-4, by 45 % at 1e-12 and by 1.7 % at 1e-300.
@@ -123,8 +121,6 @@ def flux_gap(groups: Groups) -> Value:
 
     .. math:: h^* = \kappa H_0^*, \quad H_0^* = \frac{\int_{-1}^1 H_0^{-2} dx}{\int_{-1}^1 H_0^{-3} dx}
 
-    Notes
-    -----
     It has no term of first order in the speed.
     """
     return groups.relative_roughness * of_load(groups.load, lambda c: np.asarray((c.A + c.g_star)[..., 0, 0]))
@@ -143,13 +139,9 @@ def fluid_pressure_first(groups: Groups, x: Value, printed: bool = False) -> Val
 
     .. math:: p_f = \frac{\lambda}{\kappa^2} P_{f,1}(x), \quad P_{f,1} = \int_{-1}^x \frac{H_0 - H_0^*}{H_0^3} \, dy
 
-    Parameters
-    ----------
-    printed : bool
+    printed :
         With the denominator as printed in Appendix C, h_0 for its cube; then the pressure behind the contact is not zero.
 
-    Notes
-    -----
     Zero outside the contact.
     """
     scale = groups.speed if printed else fluid_number(groups)
@@ -181,8 +173,6 @@ def gap_first(groups: Groups, x: Value) -> Value:
 
     .. math:: h = \kappa H_0 + \frac{\lambda}{\kappa} H_1, \quad H_1 = \frac{P_{f,1}}{(1 - x^2)^{1/2}}
 
-    Notes
-    -----
     The part odd in x is the second term.  [BP] print h_1 ~ kappa for 1/kappa, and the step function of p_0 the wrong way
     round.
     """
@@ -207,8 +197,6 @@ def fluid_pressure_second(groups: Groups, x: Value) -> Value:
         p_f = \frac{\lambda}{\kappa^2} P_{f,1} + \frac{\lambda^2}{\kappa^4} P_{f,2}, \quad
         P_{f,2} = \int_{-1}^x \frac{(3 H_0^* - 2 H_0) H_1}{H_0^4} \, dy
 
-    Notes
-    -----
     Zero outside the contact.  The part even in x is the second term, which carries load.
     """
     number = fluid_number(groups)

@@ -63,17 +63,12 @@ def separation_at_minimum(
         \Lambda_\mathrm{exact} = -\tfrac13 W_{-1}(-3 k^3), \qquad
         \Lambda_\mathrm{expansion} = -\ln k + \tfrac13 \ln(-\ln k), \qquad \Lambda_\mathrm{leading} = -\ln k
 
-    Parameters
-    ----------
-    form : {"uniform", "exact", "expansion", "leading"}
+    form :
         ``"uniform"``: the minimum of :func:`stribeck.asymptotics.rough.mixed.friction`, and
         :func:`~stribeck.asymptotics.hydrodynamic.central_gap` there.  The others: [BP]'s friction, in Lambert's W, its
         expansion for small k, and the first term of that.
-    printed : bool
-        Whether the expansion with the constant 0.44 as printed.
+    printed : Whether the expansion with the constant 0.44 as printed.
 
-    Notes
-    -----
     Against the central gap of the solver, in the range: ``"uniform"`` within 2.2 % for beta/mu0 = 1 and 4.4 % for 1e-3, 0.2
     and 0.6 % in the median; beyond, 6 % at 1e-4, 9 % at 3 and 20 % at 10.  For mu0 = beta = 1 ``"exact"`` and ``"expansion"``
     within 1.1 % and 1.5 % at relative roughness 1e-4, up to 13 % above at 0.01; ``"leading"`` up to 10 % below.
@@ -105,15 +100,9 @@ def speed_at_minimum(
 
     .. math:: \lambda_\mathrm{min} = \left(\frac{\kappa \Lambda}{c}\right)^{5/3}
 
-    Parameters
-    ----------
-    form : {"uniform", "exact", "expansion", "leading"}
-        Of Lambda, as in :func:`separation_at_minimum`; for ``"uniform"`` the speed itself.
-    printed : bool
-        Whether as printed: the leading form with the constant 0.44.
+    form : Of Lambda, as in :func:`separation_at_minimum`; for ``"uniform"`` the speed itself.
+    printed : Whether as printed: the leading form with the constant 0.44.
 
-    Notes
-    -----
     Against the solver, in the range: ``"uniform"`` within 1.9 % for beta/mu0 = 1 and 6.9 % for 1e-3, 0.3 and 1.1 % in the
     median; beyond, 9 % at 1e-4, 10 % at 3 and 27 % at 10.  For mu0 = beta = 1 ``"exact"`` within 1.1 % at relative roughness
     1e-4, up to 35 % above at 0.01; as printed from 14 % below to 12 % above, as its two errors cancel.
@@ -146,16 +135,11 @@ def friction_at_minimum(
         \mu_\mathrm{min} = \frac{4 \beta \bar h_\mathrm{rms}^{2/3} \bar F_N^{-1/6}}{3 \pi c^{5/3}}
         \left[\tfrac23 \Lambda^{-1/3} + \Lambda^{2/3}\right]
 
-    Parameters
-    ----------
-    form : {"uniform", "exact", "expansion", "leading"}
+    form :
         Of Lambda, as in :func:`separation_at_minimum`; for ``"uniform"`` the friction of
         :func:`stribeck.asymptotics.rough.mixed.friction` at its minimum.
-    printed : bool
-        Whether as printed: the leading form with the constant 0.44 and Lambda to the power -2/3 for 2/3.
+    printed : Whether as printed: the leading form with the constant 0.44 and Lambda to the power -2/3 for 2/3.
 
-    Notes
-    -----
     Against the solver, in the range: ``"uniform"`` within 1.1 % for beta/mu0 = 1 and 4.9 % for 1e-3, 0.1 and 0.6 % in the
     median: the error grows by 1.3 % a decade towards small beta/mu0, where the minimum lies at a thicker film with less of the
     load on asperities; beyond, 6.1 % at 1e-4 and 2.7 % at 10.  For mu0 = beta = 1 ``"exact"`` 6 to 8 % below at relative
@@ -195,13 +179,8 @@ def speed_boundary_to_mixed(groups: Groups, *, printed: bool = False) -> Value:
 
     .. math:: \frac{\lambda^2}{\kappa^4} \phi(\bar F_N) = 1 \quad\Rightarrow\quad \lambda = \kappa^2 \phi(\bar F_N)^{-1/2}
 
-    Parameters
-    ----------
-    printed : bool
-        Whether with the printed :math:`\phi = \tfrac12 (-\ln \bar F_N)^5`.
+    printed : Whether with the printed :math:`\phi = \tfrac12 (-\ln \bar F_N)^5`.
 
-    Notes
-    -----
     The criterion extrapolates the law of slow speed to where the fluid would carry all of the load.  There the fluid really
     carries 46 to 24 % of it for loads 1e-3 to 0.1, so that half of it is carried at a speed 1.1 to 3.5 times higher, which is
     the error stated for this formula; at load 0.5, 13 % and 14 to 15 times.

@@ -48,8 +48,6 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
         q &= \frac{b_1 + b_2/G}{1 + b_3 \kappa^{b_4}}, \quad G_0 = -\tfrac12 \ln \bar F_N \\
         M(G) &= m_1 G^{-m_2} (1 + m_3 G)^{-m_4} (1 + m_5 G)^{m_2 + m_4 - 3}
 
-    Notes
-    -----
     Where asperities carry nothing it is :func:`hydrodynamic.friction_uniform`. The stated error is relative to itself, largest
     where it is a small part of all friction; in the median 3 %.
     """
@@ -67,8 +65,6 @@ def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, 
 
     .. math:: \mu = \mu_0 S + \mu_f
 
-    Notes
-    -----
     The error is 0.1 % in the median over the box, 0.5 % over those states where both parts of the friction count, and at worst
     7.2 % for beta/mu0 from 1e-3 to 1.  Below, the share of asperities counts where little of it is left, and the worst
     error is 11 % at 1e-4; above, the viscous part counts in the boundary regime, and it is 13 % at 3 and 29 % at 10 by the

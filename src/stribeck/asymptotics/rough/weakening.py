@@ -43,7 +43,7 @@ DIFFERENCE_STEP = 1e-4  # Step of the differences in ln(speed).
 ROUGHNESS_RANGE = (1e-7, 1e3)  # Relative roughness between which the merging of the uniform law is sought.
 
 
-@described("k [-].", source="[BP] Eq. (Lambda_solution)", printed="Whether with the constant 0.44 as printed.")
+@described("k [-].", source="[BP] Eq. (Lambda_solution)")
 def weakening_number(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, *, printed: bool = False) -> Value:
     r"""Return the number on which the minimum of friction depends in the limit of small roughness.
 
@@ -68,8 +68,6 @@ def has_minimum(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.
 
     .. math:: k < (3e)^{-1/3} = 0.4968
 
-    Notes
-    -----
     The condition on k is necessary and far from sufficient, see :func:`roughness_without_minimum`.
     """
     boundary_friction, beta = coefficient("boundary_friction", boundary_friction), coefficient("beta", beta)
@@ -97,17 +95,13 @@ def roughness_without_minimum(
         \Lambda_\mathrm{weakening} = \tfrac13, \quad
         \Lambda_\mathrm{lines} = 3 W_0\!\left(\tfrac13 \left[\frac{9 c^5 \mu_0}{2 \beta \bar F_N \phi}\right]^{1/3}\right)
 
-    Parameters
-    ----------
-    criterion : {"uniform", "plateau", "lines", "weakening"}
+    criterion :
         ``"uniform"``: :func:`stribeck.asymptotics.rough.mixed.friction` no longer falls anywhere.
         ``"plateau"``: the minimum of [BP]'s friction reaches boundary_friction, what its Conclusion names.
         ``"lines"``: the two transitions of [BP],
         ``speed_boundary_to_mixed`` and ``speed_at_minimum`` (exact), meet, what its Conclusion means by merging.
         ``"weakening"``: the minimum of [BP]'s friction disappears, k = 0.4968.
 
-    Notes
-    -----
     Relative roughness of the merging with mu0 = beta = 1:
 
     ===============================================  =====  =====  =====  =====

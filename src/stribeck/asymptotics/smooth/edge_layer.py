@@ -58,13 +58,8 @@ def gap(groups: Groups, x: Value, printed: bool = False) -> Value:
     .. math:: h = \kappa \left[-\tfrac12 \ln F - \tfrac13 \ln\kappa + H(\xi)\right], \qquad
         \xi = \frac{|x| - 1 + \kappa}{\kappa^{2/3}}
 
-    Parameters
-    ----------
-    printed : bool
-        Put the edge at 1 as [BP] do, and not at 1 - kappa.
+    printed : Put the edge at 1 as [BP] do, and not at 1 - kappa.
 
-    Notes
-    -----
     Compared with the solver within 5 widths of the edge; as printed the error is 8 % and falls as kappa**(1/3) only.
     H(0) is :data:`.constants.EDGE_GAP`.
     """
@@ -79,13 +74,8 @@ def contact_pressure(groups: Groups, x: Value, printed: bool = False) -> Value:
 
     .. math:: p_c = \kappa^{1/3} e^{-H(\xi)}, \qquad \xi = \frac{|x| - 1 + \kappa}{\kappa^{2/3}}
 
-    Parameters
-    ----------
-    printed : bool
-        Put the edge at 1 as [BP] do, and not at 1 - kappa.
+    printed : Put the edge at 1 as [BP] do, and not at 1 - kappa.
 
-    Notes
-    -----
     Compared with the solver within 5 widths of the edge; as printed the error is 9 % and falls as kappa**(1/3) only.
     """
     kappa = groups.relative_roughness

@@ -52,8 +52,6 @@ def gap_inlet(groups: Groups, x: Value) -> Value:
 
     .. math:: h = \lambda^{3/5} H_\mathrm{in}(\xi), \qquad \xi = -\frac{x + 1}{\lambda^{2/5}}
 
-    Notes
-    -----
     Compared with the solver within 5 widths lambda**(2/5) of the edge.  Inside, H tends to :data:`.constants.FILM_CONSTANT`.
     """
     return groups.speed**0.6 * inlet().gap(np.divide(np.subtract(-1.0, x), groups.speed**0.4))
@@ -65,8 +63,6 @@ def gap_outlet(groups: Groups, x: Value) -> Value:
 
     .. math:: h = \lambda^{3/5} H_\mathrm{out}(\xi), \qquad \xi = \frac{x - 1}{\lambda^{2/5}}
 
-    Notes
-    -----
     Compared with the solver within 5 widths lambda**(2/5) of the edge.  The minimum gap is
     :data:`.constants.MINIMUM_CONSTANT` lambda**(3/5), at x = 1 + :data:`.constants.MINIMUM_POSITION` lambda**(2/5).
     """
@@ -79,8 +75,6 @@ def fluid_pressure_inlet(groups: Groups, x: Value) -> Value:
 
     .. math:: p_f = \lambda^{1/5} P_\mathrm{in}(\xi), \qquad \xi = -\frac{x + 1}{\lambda^{2/5}}
 
-    Notes
-    -----
     Compared with the solver within 5 widths lambda**(2/5) of the edge.
     """
     return groups.speed**0.2 * inlet().pressure(np.divide(np.subtract(-1.0, x), groups.speed**0.4))
@@ -92,8 +86,6 @@ def fluid_pressure_outlet(groups: Groups, x: Value) -> Value:
 
     .. math:: p_f = \lambda^{1/5} P_\mathrm{out}(\xi), \qquad \xi = \frac{x - 1}{\lambda^{2/5}}
 
-    Notes
-    -----
     Compared with the solver within 5 widths lambda**(2/5) of the edge.
     """
     return groups.speed**0.2 * outlet().pressure(np.divide(np.subtract(x, 1.0), groups.speed**0.4))

@@ -70,8 +70,6 @@ def central_gap(groups: Groups) -> Value:
         h(0) = c \lambda^{3/5} \left[\frac{1 + (6 s + d_1) u + b_2 u^2 + A d_2 u^3 + A d_3 u^4}
         {1 + d_1 u + d_2 u^2 + d_3 u^3}\right]^{1/6}, \quad u = \lambda^{2/5}, \quad A = \frac{1}{576 c^6}
 
-    Notes
-    -----
     Exact as the speed tends to zero, with the next term :math:`1 + s \lambda^{2/5}`, s = 0.245, and as it tends to infinity,
     where it becomes :func:`central_gap_small`.  In between :math:`d_1, d_2, d_3, b_2` = -0.841, 0.511, 0.032, 0.273 are
     fitted.  Largest error 0.27 %, at speed 0.7, on 241 speeds from 1e-12 to 1e8.
@@ -91,8 +89,6 @@ def flux_gap(groups: Groups) -> Value:
         {1 + d_1 u + d_2 u^2 + d_3 u^3}\right]^{1/6}, \quad u = \lambda^{2/5},
         \quad A = \left(\frac43\right)^6 \frac{1}{576 c^6}
 
-    Notes
-    -----
     Exact as the speed tends to zero, with the next term :math:`1 + s \lambda^{2/5}`, s = 0.245, and as it tends to infinity,
     where it becomes :func:`flux_gap_small`.  In between :math:`d_1, d_2, d_3, b_2` = -0.882, 0.574, 0.127, -0.442 are fitted.
     Largest error 0.04 %, on 241 speeds from 1e-12 to 1e8.
@@ -110,8 +106,6 @@ def friction(groups: Groups, beta: float = 1.0) -> Value:
 
     .. math:: \mu_{f,\mathrm{th}} = \sqrt{\mu_\mathrm{small}^2 + \mu_\mathrm{large}^2}
 
-    Notes
-    -----
     Between 7.2 % below the solver (at speed 0.003) and 1.2 % above it; :func:`friction_uniform` is within 0.3 %.
     """
     return np.hypot(friction_small.function(groups, beta), friction_large.function(groups, beta))
@@ -131,8 +125,6 @@ def friction_uniform(groups: Groups, beta: float = 1.0) -> Value:
         \mu = \mu_\mathrm{large} \left[1 + A u - \frac{(A - \frac32 s) u + b u^{3/2}}{1 + e_1 u^{1/2} + e_2 u + b u^{3/2}}
         \right]^{2/3}, \quad u = \lambda^{2/5}, \quad A u = \left(\frac{\mu_\mathrm{small}}{\mu_\mathrm{large}}\right)^{3/2}
 
-    Notes
-    -----
     Exact as the speed tends to zero, with the next term :math:`1 + s \lambda^{2/5}`, s = 4.0, and as it tends to
     infinity.  In between :math:`b, e_1, e_2` = 3.69, 2.09, -1.10 are fitted.  Largest error 0.23 %, on 241 speeds from 1e-12
     to 1e8.

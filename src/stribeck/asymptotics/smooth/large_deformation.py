@@ -41,13 +41,6 @@ def central_gap_large(groups: Groups, *, printed: bool = False) -> Value:
 
     .. math:: h(0) = c \lambda^{3/5}
 
-    Parameters
-    ----------
-    printed : bool
-        Whether with the constant 0.44 as printed.
-
-    Notes
-    -----
     The next term, relative to it, is 0.245 lambda**(2/5).
     """
     return (PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT) * groups.speed**0.6
@@ -59,8 +52,6 @@ def flux_gap_large(groups: Groups) -> Value:
 
     .. math:: h^* = c \lambda^{3/5}
 
-    Notes
-    -----
     As :func:`central_gap_large`; the two differ by less than 1e-3 even at the end of the range.
     """
     return FILM_CONSTANT * groups.speed**0.6
@@ -76,8 +67,6 @@ def minimum_gap_large(groups: Groups) -> Value:
 
     .. math:: \min h = 0.33794 \lambda^{3/5} = 0.75801 \, c \lambda^{3/5}
 
-    Notes
-    -----
     The next term, relative to it, is 0.191 lambda**(2/5).  Without cavitation, as the whole model.
     """
     return MINIMUM_CONSTANT * groups.speed**0.6
@@ -95,13 +84,6 @@ def friction_large(groups: Groups, beta: float = 1.0, *, printed: bool = False) 
 
     .. math:: \mu = \frac{4}{3 \pi c} \beta \bar F_N^{1/2} \lambda^{2/5}
 
-    Parameters
-    ----------
-    printed : bool
-        Whether with the constant 0.44 as printed.
-
-    Notes
-    -----
     The next term, relative to it, is 4.0 lambda**(2/5), so that the law is 8 % low at speed 1e-4.
 
     The printed scale (F_N R/E*)**(1/2) has a dimension and is no function of the groups: it is (F_N/(E* R))**(1/2) here, and

@@ -47,8 +47,6 @@ def central_gap_small(groups: Groups) -> Value:
 
     .. math:: h(0) = \frac{\lambda^{2/3}}{24^{1/3}}
 
-    Notes
-    -----
     The next term, relative to it, is 2.10 lambda**(-2/3).
     """
     return np.power(groups.speed, 2 / 3) / 24 ** (1 / 3)
@@ -60,8 +58,6 @@ def flux_gap_small(groups: Groups) -> Value:
 
     .. math:: h^* = \frac43 \frac{\lambda^{2/3}}{24^{1/3}}
 
-    Notes
-    -----
     The next term, relative to it, is 0.201 lambda**(-2/3).
     """
     return 4 / 3 * central_gap_small.function(groups)
@@ -80,8 +76,6 @@ def gap_small(groups: Groups, x: float | Array) -> Value:
 
     .. math:: h(x) = h_0 + \frac{x^2}{2}, \quad h_0 = \frac{\lambda^{2/3}}{24^{1/3}}
 
-    Notes
-    -----
     The next term is the deflection under the pressure of :func:`pressure_small`, of order lambda**(1/3); it is
     antisymmetric and so vanishes at x = 0.
     """
@@ -102,8 +96,6 @@ def pressure_small(groups: Groups, x: float | Array) -> Value:
 
     .. math:: p(x) = -\frac{\lambda}{3} \frac{x}{(h_0 + x^2/2)^2}, \quad h_0 = \frac{\lambda^{2/3}}{24^{1/3}}
 
-    Notes
-    -----
     It is antisymmetric and carries no load; what carries it, of the order lambda**(-1/3), is the next term.
     """
     gap = gap_small.function(groups, x)
@@ -122,8 +114,6 @@ def friction_small(groups: Groups, beta: float = 1.0) -> Value:
 
     .. math:: \mu = \frac{4 \sqrt2}{3} \, 24^{1/6} \, \beta \bar F_N^{1/2} \lambda^{2/3}
 
-    Notes
-    -----
     The next term, relative to it, is 0.0195 lambda**(-2/3).
     """
     return 4 * math.sqrt(2) / 3 * 24 ** (1 / 6) * beta * groups.load**0.5 * np.power(groups.speed, 2 / 3)
