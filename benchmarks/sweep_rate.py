@@ -1,4 +1,4 @@
-"""States per second of a sweep in one process and in several, each state written to the store; the table of docs/sweep.md.
+"""States per second of a sweep in one process and in several, each state written to the store.
 
 Random states over six decades of speed, 1.7 of load, two of roughness at rtol 1e-6.  The rate counts from the first to the
 last state, so that the start of the processes, about a second once, does not hide in it; it is shown beside.  So is the
