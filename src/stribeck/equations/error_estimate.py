@@ -66,11 +66,6 @@ class ErrorEstimate:
     scales: Array = field(repr=False)
     minimum_position: float = math.nan  # Absolute error of the position of the minimum gap [a]
 
-    def at_most(self, difference: Array) -> ErrorEstimate:
-        """Return the estimate with no discretisation error above twice the ``difference`` from a clearly coarser mesh."""
-        # In thin films the pressure between the nodes, not the state, makes the defect large.
-        return replace(self, discretisation=np.fmin(self.discretisation, SAFETY * difference))
-
     @property
     def relative(self) -> Array:
         """Relative errors of the observables."""

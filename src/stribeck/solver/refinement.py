@@ -5,12 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from stribeck._types import Array
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, error_estimate
-from stribeck.equations.film import decay_of, is_rough
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.mesh_choice import halvings_for, mesh_for
@@ -64,7 +60,6 @@ def converge(
     tail, gap_tail = mesh_tolerances_for(rtol) if tolerances is None else tolerances
     first = tail
     best = RefinedState(groups, None, None, None, Outcome.REFINEMENT_LIMIT)
-    last: tuple[int, Array] | None = None
     halvings = 0
     outcome = Outcome.REFINEMENT_LIMIT
     newton = newton_tolerance(rtol)
@@ -87,14 +82,6 @@ def converge(
             state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
         fine, values = FineOperators(mesh), values_of(state, groups)
         estimate = error_estimate(state, values, fine)
-        # Where a film ends, the rate falls to zero in a fluid without a plateau, or roughness stops the flow, two meshes may
-        # share the cause of their error.
-        film = state.equations.film
-        shared = state.equations.operators.has_exit or decay_of(film, 1.0).fractional
-        shared |= is_rough(film)
-        if last is not None and mesh.size >= (1 + NEGLIGIBLE) * last[0] and not shared:
-            estimate = estimate.at_most(np.abs(values.array() - last[1]))
-        last = mesh.size, values.array()
         before = math.inf if best.estimate is None else best.estimate.total
         if estimate.total < before:
             best = RefinedState(groups, state, values, estimate, outcome_for(estimate, rtol), (tail, gap_tail), fine)
