@@ -18,8 +18,7 @@ def nothing_is_solved(monkeypatch):
         raise sb.SolveError(sb.Outcome.STEP_LIMIT, None, "this was not refused")
 
     monkeypatch.setattr(sb, "solve", solve)
-    # A table: of a function a module that is loaded meanwhile would keep the replacement for all tests that follow.
-    monkeypatch.setattr("stribeck.curves.sensitivities.SENSITIVITIES", dict.fromkeys(("line", "point"), solve))
+    monkeypatch.setattr("stribeck.curves.sensitivities.Neighbours", solve)
     checked = sb.stribeck_curve
 
     def curve(*arguments, **options):

@@ -146,11 +146,11 @@ def test_a_film_whose_suction_opens_no_cavity_has_the_sensitivities_of_the_full_
 
 @pytest.mark.quick
 def test_a_part_without_derivatives_leaves_the_sensitivities_out_and_says_so(monkeypatch):
-    def refuse(contact, rtol, definition):
+    def refuse(contact, **asked):
         raise sb.InputError("this solid has no derivatives.")
 
     assert sensitivities_if_known(TRUE, rtol=1e-3)[2] == ""
-    monkeypatch.setitem(sensitivities.SENSITIVITIES, "line", refuse)
+    monkeypatch.setattr(sensitivities, "friction_sensitivities", refuse)
     solution, slopes, reason = sensitivities_if_known(TRUE, rtol=1e-3)
     assert solution.outcome.ok and slopes == {} and reason == "this solid has no derivatives."
 
@@ -180,6 +180,7 @@ MODELS = {
     "barus": {"fluid": sb.fluids.Barus("2e-7 1/Pa")},
     "flow": {"flow_factors": sb.fluids.PatirCheng()},
     "layer": {"solid": sb.solids.Layer("1 mm", 0.45)},
+    "carreau": {"fluid": sb.fluids.Carreau("1 ms", 0.5), "wetted_radius": "2 mm"},
 }
 
 

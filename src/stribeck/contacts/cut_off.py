@@ -46,7 +46,7 @@ and H. Brenner (1967), whose 0.9588 and -0.2526 are fits at finite gaps; M. Chao
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -121,21 +121,28 @@ def friction_integral(
     wetted_radius: Any,
     definition: Definition,
     far: FarFilm = FULL_FAR_FILM,
+    within: Callable[[int, Any], Any] | None = None,
 ) -> Any:
     r"""Return the friction integral J of balls up to where the liquid ends.
 
     .. math:: J = \frac S2 J^\mathrm{couette} + J^\mathrm{poiseuille}
 
-    each with its logarithm: the force on the flat; published, that on the ball without the contact pressure along x.
+    each with its logarithm: the force on the flat; published, that on the ball without the contact pressure along x.  What a
+    film has more up to a logarithm of the radius, ``within``, takes the place of the far film in closed form.
     """
     by_shear, by_pressure = log_cut_offs(slope, wetted_radius)
-    moves = speed > 0
-    by_shear, by_pressure, at_pressure = far_logarithms(by_shear, by_pressure, _minus_log_cut_off(parts, speed, far), far.rise)
-    couette = parts["J_couette"] + far.couette * speed * by_shear
-    found = 0.5 * slide_to_roll * couette + parts["J_poiseuille"] + far.poiseuille * speed * by_pressure
+    moves, edge = speed > 0, far.poiseuille * speed
+    if within is None:
+        start = _minus_log_cut_off(parts, speed, far)
+        by_shear, by_pressure, at_pressure = far_logarithms(by_shear, by_pressure, start, far.rise)
+        couette, poiseuille, edge = parts["J_couette"], parts["J_poiseuille"], edge / (1.0 + at_pressure)
+    else:
+        couette, poiseuille = parts["J_couette"] + within(0, by_shear), parts["J_poiseuille"] + within(1, by_pressure)
+        edge = edge + within(2, by_pressure)
+    couette, poiseuille = couette + far.couette * speed * by_shear, poiseuille + far.poiseuille * speed * by_pressure
+    found = 0.5 * slide_to_roll * couette + poiseuille
     if definition == "published":
         # Of a whole ball both forces differ by the contact pressure alone; a disc of liquid ends with a pressure at its rim.
-        edge = far.poiseuille * speed / (1.0 + at_pressure)
         found = found - parts["J_pcx"] + np.where(np.isfinite(wetted_radius), edge, 0.0)
     return np.where(moves, found, 0.0)[()]
 

@@ -162,12 +162,12 @@ def friction_of(terms: Array, other: Callable[..., Any], is_number: bool = False
     return FrictionArray(terms[:, 0], terms[:, 1], terms[:, 2], terms[:, 3], other)
 
 
-def sliding_part(slide_to_roll: float) -> float:
+def sliding_part(slide_to_roll: Any) -> Any:
     r"""Return the part of the sliding friction of asperities that acts, with its sign.
 
     .. math:: f = \tfrac12 t (3 - t^2), \quad t = \mathrm{SRR}/0.01 \text{ between } -1 \text{ and } 1
     """
-    t = min(1.0, max(-1.0, slide_to_roll / FULL_SLIP_RATIO))
+    t = np.clip(slide_to_roll / FULL_SLIP_RATIO, -1.0, 1.0)
     return 0.5 * t * (3 - t * t)
 
 

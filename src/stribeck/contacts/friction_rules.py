@@ -18,14 +18,12 @@ from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import FULL_FAR_FILM, far_error, friction_integral, is_far
 from stribeck.contacts.friction import Definition, sliding_part
 from stribeck.contacts.groups import SCALINGS, Geometry, Groups
 from stribeck.contacts.model import Model
 from stribeck.contacts.parts import PURE_SLIDING
-from stribeck.numerics.dual import value_of
 
 Values = Mapping[str, Any]  # Arrays by name
 
@@ -120,9 +118,6 @@ class FrictionRule:
         return total
 
 
-_sliding: Callable[[Any], Array] = np.vectorize(sliding_part, otypes=[float])
-
-
 class BallRule(FrictionRule):
     """The friction of balls: integrals up to where the liquid ends."""
 
@@ -143,8 +138,8 @@ class BallRule(FrictionRule):
     def viscous(self, parts: Values, speed: Any, load: Any, inputs: Values, definition: Definition) -> Any:
         """Return the viscous friction coefficient."""
         slope, far = self._slope(load, inputs), inputs.get("far", FULL_FAR_FILM)
-        J = friction_integral(parts, speed, slope, inputs["slide_to_roll"], inputs["wetted_radius"], definition, far)
-        return 1.5 / math.pi * slope * J
+        motion, within = (inputs["slide_to_roll"], inputs["wetted_radius"]), inputs.get("within")
+        return 1.5 / math.pi * slope * friction_integral(parts, speed, slope, *motion, definition, far, within)
 
     def far_error(self, parts: Values, speed: Any, load: Any, inputs: Values) -> Any:
         """Return its error by the end of the liquid."""
@@ -161,7 +156,7 @@ class BallRule(FrictionRule):
 
     def sliding_factor(self, groups: Groups, inputs: Values) -> Any:
         """Return the part of boundary_friction that acts."""
-        return _sliding(value_of(inputs["slide_to_roll"]))
+        return sliding_part(inputs["slide_to_roll"])
 
     @staticmethod
     def _slope(load: Any, inputs: Values) -> Any:

@@ -16,7 +16,7 @@ from stribeck.contacts.groups import contact_law
 from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.source import Coefficients, Parts, Source
 from stribeck.equations.observables import ROW, Observables, drag_parts
-from stribeck.equations.sensitivity import friction_slopes
+from stribeck.equations.sensitivity import derivatives_along
 from stribeck.numerics.dual import Dual, slope_of, value_of
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
@@ -309,5 +309,6 @@ class LineSource(PathSource):
             return float(self.slopes(np.array([s]), coefficients)[0])
         state = self._states[s, rtol].state
         assert state is not None
-        slopes = friction_slopes(state, self.sliding * friction.factor(None), beta, definition)
-        return float(slopes @ self.coordinate.direction)
+        model, rubbing = state.groups.model, self.sliding * friction.factor(None)
+        slopes, _ = derivatives_along(state, self.coordinate.direction, (model, model, 1.0))
+        return float(rubbing * slopes[ROW[friction.observable]] + beta * slopes[ROW[f"viscous_{definition}"]])

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,23 +12,24 @@ import numpy as np
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition, check_definition, sliding_part
+from stribeck.contacts.cut_off import far_film
+from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.parts import part_names
-from stribeck.contacts.with_parts import exponents_of, models_at_both_sides
-from stribeck.curves.factor_slopes import rest_derivatives, through_factor
-from stribeck.curves.point_sensitivities import ball_derivatives
-from stribeck.equations.sensitivity import friction_slopes
-from stribeck.numerics.dual import Dual, slope_of
+from stribeck.contacts.with_parts import exponents_of, factor_exponents, models_at_both_sides
+from stribeck.equations.point.observables import WITHIN
+from stribeck.numerics.dual import Dual
+from stribeck.numerics.settings import LOG_STEP
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError
+from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.solution import Solution
-from stribeck.solver.solve import check_rtol, finish, solve, solved_point
+from stribeck.solver.solve import check_rtol, solve
 
-Derivatives = tuple[Any, Array, Mapping[str, float], Mapping[str, float]]
-"""A solved state, and the derivatives of its friction by the logarithms of the groups, of inputs through numbers of fluid and
-solid, and of inputs at fixed groups and numbers."""
+Within = Callable[[int, Any], Any]
+"""Friction up to the logarithm of a radius more than that of a film that is far away, see :data:`WITHIN`."""
 
 
 @one_blas_thread
@@ -49,16 +51,28 @@ def friction_sensitivities(
     contact part of the friction for the friction coefficient and the viscous part for beta, and what changes through the
     fluid and the solid, whose numbers in Hertz units depend on inputs of the contact.
     """
-    rtol = check_rtol(rtol)
-    definition = check_definition(definition)
-    solution, by_groups, through, direct = SENSITIVITIES[contact.groups.geometry](contact, rtol, definition)
-    total = float(solution.friction(definition=definition)) or math.nan
-    known = exponents_of(contact)
-    exponents = {name: known.get(name, (0.0, 0.0, 0.0)) for name in (*dict(contact.inputs()), *part_names(contact))}
-    return solution, {
-        name: (float(by_groups @ np.array(powers)) + through.get(name, 0.0) + direct.get(name, 0.0)) / total
-        for name, powers in exponents.items()
-    }
+    rtol, definition = check_rtol(rtol), check_definition(definition)
+    groups, asperities = contact.groups, contact.friction_of_asperities
+    names = (asperities.observable, *RULES[groups.geometry].parts(definition))
+    changes, within = {}, None
+    if groups.speed == 0:
+        solution, slopes = solve(contact, rtol=rtol), np.zeros((len(names), len(GROUPS)))
+        slopes[0] = _rest_derivatives(contact, rtol)
+    else:
+        neighbours = Neighbours(rtol)
+        solution = neighbours.solution_from_cold(groups, contact)
+        named = [name for name, value in contact.inputs() if value and groups.model != BASE_MODEL]
+        beside = {name: models_at_both_sides(contact, name) for name in (*named, *part_names(contact))}
+        changes = {name: each for name, each in beside.items() if each is not None}
+        own = getattr(solution.observables, "_within", None)
+        inputs = RULES[groups.geometry].of_contact(contact)
+        asked = names if own is None else (*names, *WITHIN)
+        slopes = neighbours.observed(groups, asked, list(changes.values()), inputs=inputs).slopes
+        if own is not None:
+            within = _with_slopes(own, slopes[len(names) :])
+    parts = [getattr(solution.observables, name) for name in names[1:]]
+    values = np.array([asperities.amount(solution)[0], *parts])
+    return solution, _sensitivities(contact, definition, values, slopes[: len(names)], [*changes], within)
 
 
 def sensitivities_if_known(
@@ -71,48 +85,66 @@ def sensitivities_if_known(
         return solve(contact, rtol=rtol), {}, str(refusal)
 
 
-def _of_cylinder(contact: Contact, rtol: float, definition: Definition) -> Derivatives:
-    """Return the derivatives of the friction of a cylinder by those of its equations."""
-    groups = contact.groups
-    by_groups, through = np.zeros(3), dict[str, float]()
-    asperities = contact.friction_of_asperities
-    rubbing = asperities.factor(contact) * sliding_part(contact.slide_to_roll)
-    if groups.speed == 0:
-        solution, by_groups = solve(contact, rtol=rtol), rubbing * rest_derivatives(contact, rtol)
-    else:
-        point = solved_point(groups, rtol)
-        solution, state = finish(point, groups, contact, rtol), point.state
-        assert state is not None
-        named = [name for name, value in contact.inputs() if value and groups.model != BASE_MODEL]
-        beside = {name: models_at_both_sides(contact, name) for name in (*named, *part_names(contact))}
-        changes = {name: each for name, each in beside.items() if each is not None}
-        slopes = friction_slopes(state, rubbing, contact.beta, definition, list(changes.values()), asperities.observable)
-        by_groups, through = slopes[:3], dict(zip(changes, slopes[3:].tolist(), strict=True))
-    friction = solution.friction(definition=definition)
-    return solution, by_groups, through, through_factor(contact, friction.asperities) | {"beta": friction.fluid}
-
-
-SENSITIVITIES: dict[str, Callable[[Contact, float, Definition], Derivatives]] = {
-    "line": _of_cylinder,
-    "point": ball_derivatives,
-}
-"""The derivatives of the friction of a solved state, by geometry."""
-
-
 def atlas_sensitivities(contact: Contact, definition: Definition = "balanced") -> dict[str, float]:
     """Return the sensitivities of the friction that the atlas holds; raise InputError outside."""
-    groups, boundary_friction, rule = contact.groups, contact.boundary_friction, RULES[contact.groups.geometry]
-    inputs = rule.of_contact(contact)
-    slopes = atlas.friction_derivatives(groups, boundary_friction, contact.beta, definition, **rule.motion(contact))
-    share, viscous = (float(term[0]) for term in atlas.friction_terms(groups, inputs, definition))
-    direct = {"boundary_friction": boundary_friction * float(rule.sliding_factor(groups, inputs)) * share}
-    for name, value in inputs.items():
-        if math.isfinite(value):
-            _, moved = atlas.friction_terms(groups, {**inputs, name: Dual(value, value)}, definition)
-            by = direct[name] = direct.get(name, 0.0) + float(slope_of(moved)[0])
-            for other, power in rule.exponents.get(name, {}).items():
-                direct[other] = direct.get(other, 0.0) + power * by
-    total = (direct["boundary_friction"] + viscous) or math.nan
-    exponents = contact.INPUTS.exponents
-    found = {name: (float(slopes @ np.array(exponents[name])) + direct.get(name, 0.0)) / total for name in exponents}
-    return {name: value for name, value in found.items() if name in dict(contact.inputs())}
+    return _sensitivities(contact, definition, *atlas.friction_parts(contact.groups, definition))
+
+
+def _sensitivities(
+    contact: Contact,
+    definition: Definition,
+    values: Array,
+    slopes: Array,
+    changes: Sequence[str] = (),
+    within: Within | None = None,
+) -> dict[str, float]:
+    """Return the sensitivities by what asperities rub by and the parts of the viscous friction.
+
+    The slopes of these are by the logarithms of the groups, and of inputs that change the model.
+    """
+    groups, asperities, rule = contact.groups, contact.friction_of_asperities, RULES[contact.groups.geometry]
+    inputs, count = rule.of_contact(contact), slopes.shape[1]
+    rows = np.eye(count + len(inputs))
+    amount, *parts = (Dual(value, by @ rows[:count]) for value, by in zip(values.tolist(), slopes, strict=True))
+    speed, load = (Dual(value, value * row) for value, row in zip(map(float, (groups.speed, groups.load)), rows, strict=False))
+    sizes = {name: value if math.isfinite(value) else 0.0 for name, value in inputs.items()}
+    taken = {name: Dual(inputs[name], size * row) for (name, size), row in zip(sizes.items(), rows[count:], strict=True)}
+    given = {**taken, "far": far_film(groups.model), "within": within}
+    rubbing = asperities.factor(contact) * rule.sliding_factor(groups, taken) * amount
+    friction = rubbing + rule.viscous(dict(zip(rule.parts(definition), parts, strict=True)), speed, load, given, definition)
+    named = [*dict(contact.inputs()), *part_names(contact)]
+    known = exponents_of(contact)
+    found = {name: float(friction.slope[:3] @ known.get(name, np.zeros(3))) for name in named}
+    for name, power in factor_exponents(contact, [name for name in named if getattr(contact, name)]).items():
+        found[name] += power * float(rubbing.value)
+    for name, by in zip((*changes, *inputs), friction.slope[3:].tolist(), strict=True):
+        for other, power in {name: 1.0, **rule.exponents.get(name, {})}.items():
+            if other in found:
+                found[other] += power * by
+    total = float(friction.value) or math.nan
+    return {name: value / total for name, value in found.items()}
+
+
+def _with_slopes(within: Within, slopes: Array) -> Within:
+    """Return friction up to a logarithm of the radius that brings its derivatives, given those at a fixed radius."""
+
+    def at(which: int, log_radius: Any) -> Any:
+        here = float(log_radius.value)
+        ahead, behind = (within(which, here + step) for step in (LOG_STEP, -LOG_STEP))
+        moving: Any = log_radius.scaled((ahead - behind) / (2 * LOG_STEP), within(which, here))
+        moving.slope[: slopes.shape[1]] += slopes[which]
+        return moving
+
+    return at
+
+
+def _rest_derivatives(contact: Contact, rtol: float) -> Array:
+    """Return the derivatives of what asperities rub by, by the logarithms of the groups, of a contact at rest."""
+    asperities, found = contact.friction_of_asperities, np.zeros(len(GROUPS))
+    for k, name in enumerate(GROUPS):
+        here = float(getattr(contact.groups, name))
+        if here > 0 and not asperities.is_constant:
+            beside = [replace(contact.groups, **{name: here * math.exp(step)}) for step in (LOG_STEP, -LOG_STEP)]  # type: ignore[arg-type]
+            ends = [asperities.amount(solve(each, rtol=rtol))[0] for each in beside]
+            found[k] = (ends[0] - ends[1]) / (2 * LOG_STEP)
+    return found

@@ -88,19 +88,3 @@ def with_ending_of(state: State, model: Model) -> Model:
 def _by(value: Any, name: str) -> float:
     """Return the derivative of a number by the logarithm of a group."""
     return float(np.sum(value.columns.get(name, 0.0))) if isinstance(value, Trace) else 0.0
-
-
-def friction_slopes(
-    state: State,
-    rubbing: float,
-    beta: float,
-    definition: str,
-    changes: Sequence[Change] = (),
-    observable: str = "contact_load_share",
-) -> Array:
-    """Return the derivatives of friction by ln(speed), ln(load), ln(roughness), and along the changes of the model.
-
-    The friction of asperities is the factor ``rubbing`` times an observable.
-    """
-    derivatives = log_derivatives(state, changes)
-    return np.asarray(rubbing * derivatives[observable] + beta * derivatives[f"viscous_{definition}"])

@@ -15,7 +15,7 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import log_cut_offs
 from stribeck.contacts.groups import Groups
-from stribeck.equations.point.observables import FrictionWithin, observables
+from stribeck.equations.point.observables import WITHIN
 from stribeck.equations.sensitivity import Change
 from stribeck.numerics.continuation import steady_weights
 from stribeck.numerics.settings import HALF_DIGITS, MAX_AMPLIFICATION, MAX_STATES, SLOPE_RESIDUAL
@@ -27,7 +27,7 @@ from stribeck.solver.point.level import predicted
 from stribeck.solver.point.sensitivity import derivatives_along, state_derivatives
 from stribeck.solver.point.solution import finish_point
 from stribeck.solver.point.solve import solve_cold, solve_from
-from stribeck.solver.point.state import PointState, with_area
+from stribeck.solver.point.state import PointState, measured
 from stribeck.solver.solve import hertz_solution
 
 __all__ = ["Neighbours", "Observed"]
@@ -102,6 +102,13 @@ class Neighbours:
             return hertz_solution(groups, contact, self.rtol)
         return self._steps[groups.geometry].finish(self.at(groups), groups, contact)
 
+    def solution_from_cold(self, groups: Groups, contact: Contact) -> Any:
+        """Return the state of a contact from cold, and know it; raise SolveError where there is none."""
+        here, steps = _Known(groups), self._steps[groups.geometry]
+        here.state = steps.from_cold(groups)
+        self._known.appendleft(here)
+        return steps.finish(here.state, groups, contact)
+
     def release(self) -> None:
         """Forget the factors of the last state, which fill the memory."""
         self._last = None
@@ -173,7 +180,10 @@ class _Steps(Protocol):
     order: int  # Degree of the polynomial that predicts a state from those along a line
 
     def start(self, groups: Groups) -> Any:
-        """Return a state from cold."""
+        """Return a state from cold, whose mesh others may share."""
+
+    def from_cold(self, groups: Groups) -> Any:
+        """Return a state from cold, on the mesh that suits it best."""
 
     def follow(self, line: Line, groups: Groups) -> Any:
         """Return a state from those along a line, from cold where that fails."""
@@ -202,6 +212,8 @@ class _BallSteps:
         """Return a state from cold."""
         return solve_cold(groups, self.rtol)
 
+    from_cold = start
+
     def follow(self, line: Line, groups: Groups) -> PointState:
         """Return a state from those along a line, from cold where that fails."""
         moving = [(s, each) for s, each in line if isinstance(each.work, Pair)]
@@ -220,44 +232,35 @@ class _BallSteps:
         groups = state.groups
         if groups.roughness == 0:  # what touches nowhere has neither
             names = ["contact_load_share" if name == AREA else name for name in names]
-        area = {AREA: state.real_contact_area} if AREA in names else {}
-        measure = partial(with_area, groups.law) if area else observables
-        known = {name: (state.values[name], state.relative_errors[name]) for name in names if name not in area} | area
-        values, errors = np.array([known[name] for name in names]).T
-        by_groups = state_derivatives(state, by, measure, SLOPE_RESIDUAL * self.rtol)
-        slopes = np.array([by_groups.get(name, np.zeros(len(GROUPS))) for name in names])
-        if changes:
-            moved = {str(i): partial(_moved, groups, change) for i, change in enumerate(changes)}
-            along = derivatives_along(state, moved, measure, SLOPE_RESIDUAL * self.rtol)
-            slopes = np.append(slopes, [along[name] for name in names], axis=1)
-        if groups.model.film.uses_speed and isinstance(state.work, Pair):
-            fine = state.work.fine
-            within = FrictionWithin.of(fine.equations, fine.unknowns, {name: float(v) for name, v in state.values.items()})
+        thins = groups.model.film.uses_speed and WITHIN[0] not in names
+        cut_offs = None
+        if thins or WITHIN[0] in names:
             cut_offs = log_cut_offs(float(groups.slope(inputs["beta"])), inputs["wetted_radius"])
-            for which, (name, cut) in enumerate(zip(("J_couette", "J_poiseuille"), cut_offs, strict=True)):
-                row = names.index(name)
-                beyond = within(which, float(cut))
-                wrong = errors[row] * abs(values[row]) + abs(beyond)
-                values[row] += beyond
-                errors[row] = wrong / (abs(values[row]) or state.scales[name])
-        return values, slopes, errors
+        measure = partial(measured, law=groups.law if AREA in names else None, cut_offs=cut_offs)
+        known = {name: (value, state.relative_errors[name]) for name, value in state.values.items()}
+        if cut_offs is not None:
+            here = measure(state.work.fine.equations, state.work.fine.unknowns)
+            known |= {name: (here[name], 0.0) for name in WITHIN}
+        if AREA in names:
+            known[AREA] = state.real_contact_area
+        values, errors = np.array([known[name] for name in names]).T
+        slopes = state_derivatives(state, by, measure, SLOPE_RESIDUAL * self.rtol)
+        if changes:
+            directions = {
+                str(i): (replace(groups, model=below), replace(groups, model=above), width)
+                for i, (below, above, width) in enumerate(changes)
+            }
+            along = derivatives_along(state, directions, measure, SLOPE_RESIDUAL * self.rtol)
+            slopes = {name: np.append(slopes[name], each) for name, each in along.items()}
+        found = np.array([slopes.get(name, np.zeros(len(GROUPS))) for name in names])
+        for name, of in zip(("J_couette", "J_poiseuille") if thins else (), WITHIN, strict=False):
+            row, (beyond, _) = names.index(name), known[of]
+            wrong = errors[row] * abs(values[row]) + abs(beyond)
+            values[row] += beyond
+            found[row] += slopes[of]
+            errors[row] = wrong / (abs(values[row]) or state.scales[name])
+        return values, found, errors
 
     def finish(self, state: PointState, groups: Groups, contact: Contact | None) -> Any:
         """Return a state as a solution, or raise the error of its outcome."""
         return finish_point(state, contact)
-
-
-def _moved(groups: Groups, change: Change, step: float) -> Groups:
-    """Return groups whose model is moved by a step of a logarithm."""
-    below, above, width = change
-    return replace(groups, model=_between(below, above, 0.5 + step / width))
-
-
-def _between(one: Any, other: Any, part: float) -> Any:
-    """Return what lies between two frozen dataclasses of one kind, by their numbers; other parts are those of the first."""
-    if isinstance(one, float) and isinstance(other, float):
-        return one + (other - one) * part
-    if one == other or not is_dataclass(one) or isinstance(one, type):
-        return one
-    values = [_between(getattr(one, each.name), getattr(other, each.name), part) for each in fields(one) if each.init]
-    return type(one)(*values)

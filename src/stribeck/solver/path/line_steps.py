@@ -59,6 +59,10 @@ class LineSteps:
                 return found
         return self._kept(solve_cold_line(groups, self.rtol))
 
+    def from_cold(self, groups: Groups) -> RefinedState:
+        """Return a state from cold, on the mesh that suits it best."""
+        return solve_cold_line(groups, self.rtol)
+
     def follow(self, line: Sequence[tuple[float, RefinedState]], groups: Groups) -> RefinedState:
         """Return a state from those along a line, the nearest last, from cold where that fails."""
         with suppress(SolveError, FloatingPointError, np.linalg.LinAlgError):

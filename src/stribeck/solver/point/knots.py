@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.groups import Groups
-from stribeck.equations.point.observables import MINIMA, OBSERVABLES, WITHIN, FrictionWithin, identity_error, observables
+from stribeck.equations.point.observables import MINIMA, OBSERVABLES, WITHIN, identity_error
 from stribeck.equations.point.system import Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.hermite import weights_through
@@ -23,7 +24,7 @@ from stribeck.solver.point.estimate import LOOSE_OBSERVABLES
 from stribeck.solver.point.level import Level, predicted
 from stribeck.solver.point.sensitivity import changes_along, measured_change
 from stribeck.solver.point.solve import solve_cold, solve_from
-from stribeck.solver.point.state import PointState, ReadState, with_area
+from stribeck.solver.point.state import PointState, ReadState, measured
 
 __all__ = ["BallKnots", "KnotState"]
 
@@ -109,16 +110,8 @@ class BallKnots:
 
     def _measure(self, s: float) -> Callable[[Equations, Unknowns], dict[str, float]]:
         """Return what is measured of a state: its observables, and friction up to the cut-offs where that is a part of it."""
-        cut = None if self.cut_offs is None else self.cut_offs(s)
-
-        def measured(equations: Equations, y: Unknowns) -> dict[str, float]:
-            found = with_area(self.groups_at(s).law, equations, y) if self.has_area else observables(equations, y)
-            if cut is None:
-                return found
-            at = FrictionWithin.of(equations, y, found)
-            return found | {name: at(i, cut[min(i, 1)]) for i, name in enumerate(WITHIN)}
-
-        return measured
+        law = self.groups_at(s).law if self.has_area else None
+        return partial(measured, law=law, cut_offs=None if self.cut_offs is None else self.cut_offs(s))
 
     def solve(self, s: float, near: Sequence[BallKnot] = ()) -> BallKnot | Outcome:
         """Return the state at a coordinate with its slopes."""
@@ -136,12 +129,9 @@ class BallKnots:
             if self.cut_offs is not None or self.has_area:
                 besides = measure(fine.equations, fine.unknowns).items()
                 values |= {name: value for name, value in besides if name in (*WITHIN, AREA)}
-
-            def moved(step: float) -> Groups:
-                return self.groups_at(s + step)
-
-            [change] = changes_along(state, {"along": moved}, max(HALF_DIGITS, NEGLIGIBLE**2 * self.rtol)).values()
-            slopes = measured_change(state, moved, change, measure)
+            along = self.groups_at(s - LOG_STEP), self.groups_at(s + LOG_STEP), 2 * LOG_STEP
+            [change] = changes_along(state, {"along": along}, max(HALF_DIGITS, NEGLIGIBLE**2 * self.rtol)).values()
+            slopes = measured_change(state, along, change, measure)
         else:
             values = dict(state.values)
             ends = [solve_cold(self.groups_at(s + step), self.rtol) for step in (LOG_STEP, -LOG_STEP)]

@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -32,8 +31,8 @@ from stribeck.solver.point.state import PointState
 
 __all__ = ["changes_along", "derivatives_along", "measured_change", "state_derivatives"]
 
-Direction = Callable[[float], Groups]
-"""Groups, with their model, after a step of the logarithm of a group or an input."""
+Direction = tuple[Groups, Groups, float]
+"""Groups, with their model, behind and ahead of a state along a logarithm, and the distance of both."""
 
 Measure = Callable[[Equations, Unknowns], Mapping[str, float]]
 """Observables of a state by name."""
@@ -44,7 +43,7 @@ def state_derivatives(
 ) -> dict[str, Array]:
     """Return the derivatives of all observables with respect to ln(speed), ln(load) and ln(roughness)."""
     groups = state.groups
-    alive = {name: partial(_moved, groups, name) for name in GROUPS if name in by and float(getattr(groups, name)) > 0}
+    alive = {name: _by_group(groups, name) for name in GROUPS if name in by and float(getattr(groups, name)) > 0}
     if not alive:
         return {name: np.zeros(len(GROUPS)) for name in state.values}
     found = derivatives_along(state, alive, measure, tolerance)
@@ -53,8 +52,11 @@ def state_derivatives(
     return {name: np.where(zero, 0.0, column[columns]) for name, column in found.items()}
 
 
-def _moved(groups: Groups, name: str, step: float) -> Groups:
-    return replace(groups, **{name: float(getattr(groups, name)) * math.exp(step)})  # type: ignore[arg-type]
+def _by_group(groups: Groups, name: str) -> Direction:
+    """Return the direction of a group."""
+    here = float(getattr(groups, name))
+    behind, ahead = (replace(groups, **{name: here * math.exp(step)}) for step in (-LOG_STEP, LOG_STEP))  # type: ignore[arg-type]
+    return behind, ahead, 2 * LOG_STEP
 
 
 def derivatives_along(
@@ -74,12 +76,12 @@ def changes_along(state: PointState, directions: Mapping[str, Direction], tolera
     linear = equations.linear(y)
     precondition = _preconditioner(linear, kept)
     found: dict[str, Unknowns] = {}
-    for name, moved in directions.items():
-        near = [_beside(equations, moved(sign * LOG_STEP)) for sign in (1.0, -1.0)]
-        ahead, behind = (each.residual(y) for each in near)
-        shape, flow = ((a - b) / (2 * LOG_STEP) for a, b in zip(ahead[:2], behind[:2], strict=True))
-        change = (np.asarray(shape), np.asarray(flow), (ahead[2] - behind[2]) / (2 * LOG_STEP))
-        suction_change = (near[0].least - near[1].least) / (2 * LOG_STEP) if math.isfinite(equations.least) else 0.0
+    for name, (*ends, width) in directions.items():
+        near = [_beside(equations, each) for each in ends]
+        behind, ahead = (each.residual(y) for each in near)
+        shape, flow = ((a - b) / width for a, b in zip(ahead[:2], behind[:2], strict=True))
+        change = (np.asarray(shape), np.asarray(flow), (ahead[2] - behind[2]) / width)
+        suction_change = (near[1].least - near[0].least) / width if math.isfinite(equations.least) else 0.0
         right = linear.sources(change, suction_change)
         x = _solved(linear, precondition, right, tolerance)
         if x is None and kept is not None:
@@ -91,15 +93,17 @@ def changes_along(state: PointState, directions: Mapping[str, Direction], tolera
     return found
 
 
-def measured_change(state: PointState, moved: Direction, change: Unknowns, measure: Measure = observables) -> dict[str, float]:
+def measured_change(
+    state: PointState, direction: Direction, change: Unknowns, measure: Measure = observables
+) -> dict[str, float]:
     """Return the derivatives of all observables along a direction, from those of the unknowns."""
-    equations, y = state.work.fine.equations, state.work.fine.unknowns
+    equations, y, (*ends, width) = state.work.fine.equations, state.work.fine.unknowns, direction
     size = LOG_STEP / max(1.0, float(np.abs(change.gap / y.gap).max()))
-    values = []
-    for sign in (1.0, -1.0):
-        each = _beside(equations, moved(sign * size))
-        values.append(measure(each, each.with_same_active_set(y.moved(change, sign * size), y)))
-    return {name: (value - values[1][name]) / (2 * size) for name, value in values[0].items()}
+    at_ends = [(each, y) for each in (_beside(equations, end) for end in ends)]
+    moved = [(equations, y.moved(change, step)) for step in (-size, size)]
+    values = [measure(each, each.with_same_active_set(there, y)) for each, there in (*at_ends, *moved)]
+    before, after, less, more = (np.array([*each.values()]) for each in values)
+    return dict(zip(values[0], ((after - before) / width + (more - less) / (2 * size)).tolist(), strict=True))
 
 
 def _preconditioner(linear: Linear, kept: Any) -> Apply:

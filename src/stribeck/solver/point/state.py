@@ -13,12 +13,12 @@ from typing import Any, NamedTuple
 from stribeck._types import Array
 from stribeck.contact_laws.law import area_slope
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.cut_off import far_error, far_film, friction_integral, is_far, log_cut_offs
+from stribeck.contacts.cut_off import far_error, far_film, friction_integral, is_far
 from stribeck.contacts.friction import Definition, sliding_part
 from stribeck.contacts.geometries import PointContact
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.parts import PURE_SLIDING
-from stribeck.equations.point.observables import OBSERVABLES, FrictionWithin, observables
+from stribeck.equations.point.observables import OBSERVABLES, WITHIN, FrictionWithin, observables
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.lazy import cached_property
@@ -123,12 +123,19 @@ def area_integral(law: Any, pressure: Array, mesh: Any, scale: float) -> float:
     return float((law.area_fraction_at(pressure * scale) @ mesh.area_weights).sum()) / math.pi
 
 
-def with_area(law: Any, equations: Equations, y: Unknowns) -> dict[str, float]:
-    """Return the observables of a state and its real area of contact, of a law that knows it."""
-    scaled: Any = equations.law
-    scale = float(scaled.load**scaled.pressure_exponent)
-    area = area_integral(law, scaled.pressure(y.gap), equations.operators.mesh, scale)
-    return observables(equations, y) | {AREA: area}
+def measured(
+    equations: Equations, y: Unknowns, law: Any = None, cut_offs: tuple[float, float] | None = None
+) -> dict[str, float]:
+    """Return the observables of a state, its real area by a law that knows it, and :data:`WITHIN` of cut-offs."""
+    found = observables(equations, y)
+    if law is not None:
+        scaled: Any = equations.law
+        scale = float(scaled.load**scaled.pressure_exponent)
+        found[AREA] = area_integral(law, scaled.pressure(y.gap), equations.operators.mesh, scale)
+    if cut_offs is not None:
+        within = FrictionWithin.of(equations, y, found)
+        found |= {name: within(i, float(cut_offs[min(i, 1)])) for i, name in enumerate(WITHIN)}
+    return found
 
 
 class ReadState(ByValue, PointState):
@@ -227,17 +234,7 @@ class PointObservables:
         parts = {name: getattr(self, name) for name in ("J_couette", "J_poiseuille", "J_pcx")}
         wetted = math.inf if self._wetted_radius is None else self._wetted_radius
         speed, far = float(self._groups.speed), far_film(self._groups.model)
-        if self._within is None:
-            return float(friction_integral(parts, speed, slope, self._slide_to_roll, wetted, definition, far))
-        by_shear, by_pressure = (float(each) for each in log_cut_offs(slope, wetted))
-        couette = parts["J_couette"] + far.couette * speed * by_shear + self._within(0, by_shear)
-        poiseuille = parts["J_poiseuille"] + far.poiseuille * speed * by_pressure + self._within(1, by_pressure)
-        found = 0.5 * self._slide_to_roll * couette + poiseuille
-        if definition == "published":
-            found -= parts["J_pcx"]
-            if math.isfinite(wetted):
-                found += far.poiseuille * speed + self._within(2, by_pressure)
-        return float(found)
+        return float(friction_integral(parts, speed, slope, self._slide_to_roll, wetted, definition, far, self._within))
 
     def drags_along(self, slope: float) -> bool:
         """Return whether the friction up to a wetted radius has the wrong sign, and so is unresolved."""
