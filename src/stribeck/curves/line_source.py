@@ -205,7 +205,7 @@ class LineSource(PathSource):
     @cached_property
     def sliding(self) -> float:
         """Fraction of the sliding friction of asperities that acts, with its sign."""
-        return sliding_part(2 * self.coordinate.groups_at(0.0).model.film.slide)
+        return float(sliding_part(2 * self.coordinate.groups_at(0.0).model.film.slide))
 
     @cached_property
     def least_error(self) -> float:

@@ -132,7 +132,7 @@ class Solution(BaseSolution):
 
     @property
     def _sliding(self) -> float:
-        return sliding_part(2 * self.groups.model.film.slide)
+        return float(sliding_part(2 * self.groups.model.film.slide))
 
     def _walls(self, beta: float) -> tuple[float, float]:
         return beta * self.observables.viscous_balanced, beta * self.observables.viscous_upper

@@ -245,7 +245,7 @@ class PointObservables:
     @property
     def sliding(self) -> float:
         """Fraction of the sliding friction of asperities that acts, with its sign."""
-        return sliding_part(self._slide_to_roll)
+        return float(sliding_part(self._slide_to_roll))
 
     def viscous_friction(self, beta: float, definition: Definition = "balanced") -> float:
         r"""Return the viscous friction coefficient.
