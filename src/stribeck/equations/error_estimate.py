@@ -259,9 +259,9 @@ def error_estimate(state: State, observed: Observables, fine: FineOperators) -> 
     equations, y, values = state.equations, state.y, observed.array()
     mesh, u = equations.operators.mesh, equations.fields(y)
     changed = perturbations(state, values, fine)
-    effects = np.abs(changes(equations, y, float(state.groups.load), changed.unknowns))
-    effects[0, DRAG_ROWS] += changed.friction
     place = coordinate(u, observed.minimum_position)
+    effects = np.abs(changes(equations, y, float(state.groups.load), place, changed.unknowns))
+    effects[0, DRAG_ROWS] += changed.friction
     interpolation = np.zeros_like(values)
     interpolation[GAP_ROWS] = interpolation_errors(mesh, u.gap, place, coordinate(u, 0.0))
     scales = np.abs(values)

@@ -126,8 +126,9 @@ def measured(equations: Equations, u: Fields, load: Numbers, by: str | None = No
     return found
 
 
-def changes(equations: Equations, y: Array, load: float, dy: Array) -> Array:
+def changes(equations: Equations, y: Array, load: float, lowest: float, dy: Array) -> Array:
     """Return the changes of the observables with small changes ``dy`` of the unknowns, shape (..., len(ALL_NAMES))."""
+    # ``lowest`` is the place of the minimum gap on the mesh.
     u, du = equations.fields(y), equations.fields(dy)
     moving = Fields(*(None if value is None else Trace(value, None, {ALONG: by}) for value, by in zip(u, du, strict=True)))
     found = np.zeros((*dy.shape[:-1], len(ALL_NAMES)))
@@ -142,7 +143,7 @@ def changes(equations: Equations, y: Array, load: float, dy: Array) -> Array:
         moved = moved - centre / stretch_of(u) * du.cavity_stretch[..., 0]
     found[..., ROW["central_gap"]] = _of_gap(mesh, u.gap, du.gap, centre, moved)
     # The minimum moves along a gap without a slope.
-    found[..., ROW["minimum_gap"]] = _of_gap(mesh, u.gap, du.gap, minimum_gap(mesh, u.gap)[0], 0.0)
+    found[..., ROW["minimum_gap"]] = _of_gap(mesh, u.gap, du.gap, lowest, 0.0)
     return found
 
 

@@ -36,7 +36,7 @@ def log_derivatives(state: State, beside: Sequence[Change] = ()) -> dict[str, Ar
     """
     found, forces = _partials(state, np.eye(len(GROUPS)), beside)
     moves = _moves(state, forces)
-    found += changes(state.equations, state.y, float(state.groups.load), moves)
+    found += _changes(state, moves)
     return dict(zip((*ALL_NAMES, AREA), (*found.T, area_derivatives(state, moves)), strict=True))
 
 
@@ -44,7 +44,12 @@ def derivatives_along(state: State, direction: Array, change: Change) -> tuple[A
     """Return the derivatives of all observables, and of the unknowns, along a path: of ln(groups), and by its model."""
     found, forces = _partials(state, direction[None], [] if change[0] == change[1] else [change])
     move = _moves(state, forces.sum(axis=0))
-    return found.sum(axis=0) + changes(state.equations, state.y, float(state.groups.load), move), move
+    return found.sum(axis=0) + _changes(state, move), move
+
+
+def _changes(state: State, moves: Array) -> Array:
+    """Return the changes of the observables with those of the unknowns."""
+    return changes(state.equations, state.y, float(state.groups.load), state.minimum_position, moves)
 
 
 def _moves(state: State, forces: Array) -> Array:

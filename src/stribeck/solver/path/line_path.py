@@ -89,7 +89,7 @@ class LineProblem(LineStates):
             gap = guess.y[guess.equations.layout.gap]
             if not (np.isfinite(gap).all() and gap.min() > 0):
                 return Outcome.NOT_FINITE
-            spread = max(abs(guess.minimum_position - one.point.state.minimum_position) for one in near)
+            spread = max(abs(guess.minimum_position - one.values[POSITION]) for one in near)
             refined = self.steps.solve(guess, groups, spread)
         else:
             refined = self.steps.start(groups)
