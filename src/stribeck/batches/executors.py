@@ -1,7 +1,7 @@
-"""One map over many states, whose chains this process solves, processes of this machine, or the workers of a Dask cluster.
+"""One map over many states: solved by this process, by processes of this machine, or by the workers of a Dask cluster.
 
-An executor takes chains, ``keep(rows)`` for the states that have ended, in whatever order, and ``pause()``, which is called at
-least twice a second and may raise KeyboardInterrupt to stop.  Both run in this process alone.  No worker outlives the call.
+An executor calls, in this process alone, ``keep(rows)`` for states that have ended, in any order, and ``pause()`` at least
+twice a second, which may raise KeyboardInterrupt.  No worker outlives the call.
 """
 
 from __future__ import annotations

@@ -1,7 +1,6 @@
-"""In which order states are solved: so that each finds a neighbour solved, in chains that are independent of each other.
+"""The order in which states are solved: in chains, each state beside a solved one, each chain from cold.
 
-A chain begins cold; one chain is what a worker gets at a time.  Chains depend on the design alone, so that the numbers do not
-depend on how many workers there are.
+Chains depend on the design alone, so that the numbers do not depend on how many workers there are.
 """
 
 from __future__ import annotations

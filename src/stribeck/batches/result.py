@@ -117,12 +117,9 @@ class BatchSolution(Exported, Shown, ByValue):
 
     @property
     def friction(self) -> FrictionArray:
-        r"""The friction coefficients [-], balanced: an array with its parts ``asperities``, ``fluid`` and its ``error``.
+        """The friction coefficients [-], balanced: an array with its parts ``asperities``, ``fluid`` and its ``error``.
 
-        .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \beta \, \mu_f(\beta = 1)
-
-        The coefficients are those of the contacts, or 1 where only groups are known.  ``friction(boundary_friction, beta,
-        definition)`` is the same for other coefficients, each of which may be left out, as on a solution.
+        ``friction(boundary_friction, beta, definition)`` returns it for others than those of the contacts, or 1 of groups.
         """
         return self._friction()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -44,52 +44,24 @@ LEVELS = (0.682689492137086, 0.95)  # Probabilities of the two intervals
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LoopFit(WithFittedInputs, Exported, Told, ByValue):
-    """Inputs of a contact fitted to a friction loop, with their intervals.
-
-    Attributes
-    ----------
-    inputs : tuple of FittedInput
-        The fitted inputs; their intervals are those of the covariance.
-    outcome : FitOutcome
-        How the fit ended.
-    stroke : Stroke
-        The stroke with the fitted inputs.
-    over : {"position", "time"}
-        What friction was measured over.
-    values : ndarray, shape (n,)
-        Its values at the rows that were used [m or s].
-    measured, friction, friction_error : ndarray, shape (n,)
-        Measured and fitted friction coefficient there, and the error of the latter by steps and mesh [-].
-    noise : float
-        Standard deviation of the residuals [-].
-    correlation : float
-        Correlation of neighbouring residuals, which widens the intervals [-].
-    notes : tuple of str
-        What to know before using the numbers.
-    """
+    """Inputs of a contact fitted to a friction loop, with their intervals."""
 
     _picture = "stribeck.plot.strokes.plot_loop_fit"
 
-    inputs: tuple[FittedInput, ...]
-    outcome: FitOutcome
-    stroke: Stroke = field(repr=False)
-    over: str
-    values: Array
-    measured: Array
-    friction: Array
-    friction_error: Array
-    noise: float
-    correlation: float
-    notes: tuple[str, ...] = ()
+    inputs: Annotated[tuple[FittedInput, ...], "the fitted inputs; their intervals are those of the covariance"]
+    outcome: Annotated[FitOutcome, "how the fit ended"]
+    stroke: Annotated[Stroke, "the stroke with the fitted inputs"] = field(repr=False)
+    over: Annotated[str, "what friction was measured over, 'position' or 'time'"]
+    values: Annotated[Array, "position or time of the rows that were used", "m or s"]
+    measured: Annotated[Array, "measured friction coefficient", "1"]
+    friction: Annotated[Array, "fitted friction coefficient", "1"]
+    friction_error: Annotated[Array, "error of the latter by steps and mesh", "1"]
+    noise: Annotated[float, "standard deviation of the residuals", "1"]
+    correlation: Annotated[float, "correlation of neighbouring residuals, which widens the intervals", "1"]
+    notes: Annotated[tuple[str, ...], "what to know before using the numbers"] = ()
 
     def to_dict(self) -> dict[str, Any]:
-        """Return values, intervals, rows and outcome under their names, ready for JSON.
-
-        Returns
-        -------
-        dict
-            Numbers, text, lists and dictionaries of these.
-        """
+        """Return values, intervals, rows and outcome, ready for JSON."""
         found: dict[str, Any] = {
             "outcome": self.outcome.name,
             "message": self.outcome.value,

@@ -1,14 +1,4 @@
-r"""Points of a curve from the passes of all files: one weighted least squares for friction, force zero and its drift.
-
-A pass in direction s = +-1 at time t under the load N has the mean friction
-
-.. math::
-
-    m = \mu + s \left( \frac{a + b t}{N} + c \right)
-
-with the force zero a of its file, the drift b of it and the misalignment c; these are known only where both directions were
-measured, c only where loads differ too.  The drift is taken off if it exceeds three standard errors, and c likewise.
-"""
+"""Points of a curve by one weighted least squares: friction, force zero, its drift and misalignment (docs/bench.md)."""
 
 from __future__ import annotations
 

@@ -116,13 +116,7 @@ class BenchCurve(Exported, Told, ByValue):
         return f"{points}{several} from {rows} of {files}, {kept} of them kept{doubt}."
 
     def to_dict(self) -> dict[str, Any]:
-        """Return points, notes and inputs under their names, ready for JSON.
-
-        Returns
-        -------
-        dict
-            By the names of the attributes.
-        """
+        """Return points, notes and inputs, ready for JSON."""
         columns = {name: getattr(self, name) for name in (*POINTS, "error")}
         of = {"files": list(self.paths), "curves": list(self.curves), "inputs": list(self.inputs)}
         return of | {"curve": [self.curves[k] for k in self.curve]} | columns | {"notes": list(self.notes)}

@@ -1,8 +1,4 @@
-"""Parts of a series: steps of steady speed found by change points, strokes, ramps, rest.
-
-A step ends where the mean of the logarithm of the speed changes: binary segmentation splits a part at the row that lowers the
-sum of squares most, as long as both means differ by more than a speed may (1 %) and by more than noise lets them.
-"""
+"""Parts of a series: steps of steady speed, by binary segmentation at change points of ln(speed), strokes, ramps, rest."""
 
 from __future__ import annotations
 
@@ -37,10 +33,7 @@ class Part:
 
 
 def directions(speed: Array, friction: Array) -> tuple[Array, Array, bool]:
-    """Return the speed with its sign, friction as positive along the motion, and whether the force has a sign.
-
-    Where the speed is only a size, a force that changes its sign for stretches gives the direction.
-    """
+    """Return the speed with its sign, friction positive along the motion, and whether the force has a sign."""
     turns = _runs(np.sign(friction))
     both = (friction > 0).any() and (friction < 0).any()
     if not (speed < 0).any() and both and float(np.median([end - first for first, end in turns])) >= FEWEST:

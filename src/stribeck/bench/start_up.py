@@ -1,8 +1,6 @@
-"""The start of a step, left out where friction has not settled.
+"""The start of a step that has not settled, cut where the standard error of the mean of the rest is smallest.
 
-The rule is that of simulations (MSER [White 1997]): of all places in the first half, the cut is where the standard error of
-the mean of what remains is smallest.  The cut counts only if the mean before it differs from the mean after it by more than
-three standard errors, which allow for the memory of the noise: else what looks like a start is noise.
+Source: MSER [White 1997]; the cut counts if the means differ by three standard errors, else what looks like a start is noise.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""The table of facts: what is known about a contact and used by no equation, only to check whether the model applies.
-
-The table ``[check]`` of case files and :func:`stribeck.check` read it: one row is one fact everywhere.
-"""
+"""The table ``[check]`` of facts that no equation uses, only :func:`stribeck.check`: one row is one fact everywhere."""
 
 from __future__ import annotations
 

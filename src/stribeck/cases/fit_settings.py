@@ -1,7 +1,4 @@
-"""What the ``[fit]`` table of a case asks for: free quantities, bounds, priors, noise, and the columns of the data.
-
-Only what can be said without the data is checked here; what a column holds is for :mod:`stribeck.fits.measurements`.
-"""
+"""What the ``[fit]`` table of a case asks for, as far as it can be checked without the data."""
 
 from __future__ import annotations
 

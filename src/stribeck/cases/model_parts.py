@@ -1,7 +1,4 @@
-"""The tables of a case file that describe parts of a contact: ``[fluid]``, ``[solid]``, ``[asperity_friction]`` and others.
-
-Each becomes one or two arguments of the contact; what a number may be is checked by the law that it goes into.
-"""
+"""The tables of a case file that describe parts of a contact: ``[fluid]``, ``[solid]``, ``[asperity_friction]`` and others."""
 
 from __future__ import annotations
 

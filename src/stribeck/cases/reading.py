@@ -1,8 +1,4 @@
-"""Case files: a TOML file of quantities with units becomes a checked :class:`Case`.
-
-All problems of a file are reported at once, a sentence each, with the path, the table and the key. Bounds of quantities are
-in :mod:`stribeck.contacts.contact`.
-"""
+"""Case files: TOML with units becomes a checked :class:`Case`; all problems are reported at once, a sentence each."""
 
 import os
 from dataclasses import replace

@@ -119,8 +119,7 @@ def pores(subject: Subject) -> Check | None:
 
     .. math:: \mathrm{Pe} = U a/D, \qquad D = k E^*/\eta
 
-    Far below one the liquid in the pores leaves as the contact passes, and the solid carries the load; from about one on the
-    liquid in the pores carries load that the model gives to asperities.  Source: docs/checks.md.
+    Source: docs/checks.md.
     """
     contact, D, k = subject.contact, subject.fact("diffusivity"), subject.fact("permeability")
     if D is None and k is not None:
@@ -191,11 +190,9 @@ def stiffness(subject: Subject) -> Check:
 def width(subject: Subject) -> Check | None:
     r"""Return the check of the half-width over the radius, with what the parabola costs.
 
-    .. math:: f = \frac{x^2}{2 R} + \frac{x^4}{8 R^3} + \dots, \qquad
-        F = \frac{E^*}{2} \int_{-a}^a \frac{x f'(x) \, dx}{(a^2 - x^2)^{1/2}}
-        = \frac{\pi E^* a^2}{4 R} \Bigl(1 + \frac38 \frac{a^2}{R^2} + \dots\Bigr)
+    .. math:: F = \frac{\pi E^* a^2}{4 R} \Bigl(1 + \frac38 \frac{a^2}{R^2} + \dots\Bigr)
 
-    for a cylinder, and 1 + (2/5) (a/R)^2 by the same integral of Sneddon for a ball.  Source: derived for docs/checks.md.
+    for a cylinder, 1 + (2/5) (a/R)^2 for a ball.  Source: the next term of the circle in Hertz's integral and in Sneddon's.
     """
     contact = subject.contact
     if contact.profile is not None:  # see :func:`shape`

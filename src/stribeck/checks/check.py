@@ -187,13 +187,7 @@ class Checks(Exported, Told):
         return any(_without_numbers(note)[: len(text)] in text for text in sentences)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return verdict and checks, ready for JSON.
-
-        Returns
-        -------
-        dict
-            ``applies``, and under ``checks`` a dictionary of each.
-        """
+        """Return verdict and checks, ready for JSON."""
         return {"applies": self.applies, "checks": [each.to_dict() for each in self.checks]}
 
     def _labelled(self) -> Labelled:

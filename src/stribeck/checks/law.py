@@ -31,13 +31,10 @@ RMS_SLOPE_OUTSIDE = 1.0  # Rms slope from which linear elasticity and Reynolds' 
 def roughness_slope(subject: Subject) -> Check | None:
     r"""Return the check of the rms slope of the roughness; None where it is not known.
 
-    .. math:: \frac{\bar p}{E^*} = \frac{\sqrt\pi}{2\sqrt2} \, h'_\mathrm{rms} = 0.63 \, h'_\mathrm{rms}, \qquad
-        \frac{dp/dx}{(dp/dx)_\mathrm{Reynolds}} = \frac{\tan^3 x \cos x}{3 (\sin x - x \cos x)} = 1 + 0.6 \, \tan^2 x + \dots
+    .. math:: \frac{\bar p}{E^*} = 0.63 \, h'_\mathrm{rms}, \qquad
+        \frac{dp/dx}{(dp/dx)_\mathrm{Reynolds}} = 1 + 0.6 \, \tan^2 x
 
-    The first is the mean pressure where asperities touch, at small loads, as :math:`A/A_0 = \mathrm{erf}(\sqrt2 \, p/(E^*
-    h'_\mathrm{rms}))` in Persson's theory; the second the flow in a wedge of slope tan x between flat walls, on one of them.
-    At 0.3 the pressure is 0.19 E* and the gradient 5 % larger than Reynolds'; at 1 they are 0.63 E*, which no solid bears
-    linearly, and 55 %.  Source: Hamel's flow without inertia, derived for docs/checks.md; [YP08] for the area.
+    Source: [YP08] for the area in contact; Hamel's flow without inertia in a wedge of slope tan x, derived for docs/checks.md.
     """
     contact = subject.contact
     name = "rms slope of the roughness"

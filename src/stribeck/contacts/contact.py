@@ -1,7 +1,4 @@
-"""The part common to contacts of every geometry: inputs in SI units, checked, kept and replaced.
-
-A geometry adds its table of inputs, its groups and its Hertz scales.
-"""
+"""The part common to contacts of every geometry: inputs in SI units, checked, kept and replaced."""
 
 from __future__ import annotations
 

@@ -1,34 +1,30 @@
 r"""Where the logarithm in the friction of a ball ends: at the edge of the liquid, or at the ball itself.
 
-Far from the contact the shear :math:`\eta (u_1 - u_2)/h` and the pressure fall so slowly that the friction of a parabola
-grows as :math:`\ln X` with the radius X up to which it is wetted. In Hertz units, S being the slide-to-roll ratio,
+Shear and pressure fall so slowly that friction grows with the radius X up to which the parabola is wetted. In Hertz units, S
+being the slide-to-roll ratio and J the finite parts of a state,
 
 .. math::
 
     J = \frac S2 \left[J^\mathrm{couette} + \tfrac23 \pi \lambda \ln X\right]
-        + J^\mathrm{poiseuille} + \tfrac25 \pi \lambda \ln X ,
+        + J^\mathrm{poiseuille} + \tfrac25 \pi \lambda \ln X .
 
-with the finite parts J of a state. *A disc of liquid* ends at X. *A ball in liquid without bounds* that turns and moves along
-a plane with the surface speeds :math:`u_2` and :math:`u_1` at a small gap h has, by Stokes' equations, the force
+*A disc of liquid* ends at X. *A ball in liquid without bounds* whose surfaces move at :math:`u_2` along a plane that moves at
+:math:`u_1` has, by Stokes' equations at a small gap h, the force
 
 .. math::
 
-    \frac{F}{6 \pi \eta R} = u_1 \left[\tfrac8{15} \ln\frac Rh + K\right] - u_2 \left[\tfrac2{15} \ln\frac Rh + K'\right]
-    = \frac{u_1 - u_2}{2} \left[\tfrac23 \ln\frac Rh + K + K'\right]
-    + \frac{u_1 + u_2}{2} \left[\tfrac25 \ln\frac Rh + K - K'\right]
+    \frac{F}{6 \pi \eta R} = u_1 \left[\tfrac8{15} \ln\frac Rh + K\right] - u_2 \left[\tfrac2{15} \ln\frac Rh + K'\right],
+    \qquad K = 0.954293, \quad K' = -0.257268 .
 
-with K = 0.954293 and K' = -0.257268. The rigid parabola :math:`h = h_0 + r^2/2R` with
-:math:`p_f = -\tfrac65 \eta U x/h^2`, up to X, has both with :math:`\tfrac23 \ln(X^2/2 R h_0)` and
-:math:`\tfrac25 [\ln(X^2/2 R h_0) - 2]` in the brackets, so that they agree for
+The rigid parabola with :math:`p_f = -\tfrac65 \eta U x/h^2` has the same shear and the same pressure for
 
 .. math:: \ln \frac{X^\mathrm{couette}}R = \tfrac12 \left[\ln 2 + \tfrac32 (K + K')\right], \qquad
-    \ln \frac{X^\mathrm{poiseuille}}R = \tfrac12 \left[\ln 2 + 2 + \tfrac52 (K - K')\right].
+    \ln \frac{X^\mathrm{poiseuille}}R = \tfrac12 \left[\ln 2 + 2 + \tfrac52 (K - K')\right],
 
-With one surface at rest both together are one radius, 5.034 R.
+one radius of 5.034 R if one surface is at rest.
 
-*A film that is thick at X*, as thick as the parabola rises up to there, is no longer far away: the logarithms alone would turn
-negative. By :math:`J^\mathrm{couette}` the logarithm of the shear begins at a radius :math:`X_0`, which is
-:math:`\sqrt{2 R h_0}` of the rigid parabola and vanishes for thin films. With :math:`y = X_0^2/X^2` that parabola has
+*A film as thick as the parabola at X* would make the logarithms negative. The shear begins at a radius :math:`X_0`, known from
+:math:`J^\mathrm{couette}`; with :math:`y = X_0^2/X^2` the rigid parabola has
 
 .. math::
 

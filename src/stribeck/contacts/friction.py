@@ -172,10 +172,7 @@ def sliding_part(slide_to_roll: Any) -> Any:
 
 
 def coefficients(contact: Contact | None, boundary_friction: Any, beta: float | None) -> tuple[Any, float]:
-    """Return boundary_friction and beta as given, by default of the contact, or 1 without a contact.
-
-    Another friction of asperities stands in the place of the coefficient.
-    """
+    """Return boundary_friction (or another friction of asperities) and beta as given, by default of the contact, else 1."""
     own = boundary_friction
     if own is None and contact is not None:
         own = contact.asperity_friction

@@ -1,11 +1,4 @@
-"""The contacts by geometry: a cylinder, ``geometry = "line"``, or a ball, ``"point"``, in SI units.
-
-They are what a tribologist knows; they turn into :class:`Groups` and back, and give the Hertz scales with which results
-return to SI.  No equation is solved here.
-
-Source: [Bertin & Pouliquen] Eq. (Hertz_scales) for the cylinder; H. Hertz (1882), as in K. L. Johnson, Contact Mechanics
-(1985), for the ball; theory.md, section 11.
-"""
+"""The contacts by geometry in SI units: a cylinder, ``geometry = "line"``, or a ball, ``"point"``."""
 
 from __future__ import annotations
 

@@ -1,8 +1,5 @@
 r"""The three dimensionless groups of the model: all that the equations see.
 
-With the dry smooth contact of Hertz as the unit, its half-width or radius a, indentation :math:`u = a^2/R` and largest
-pressure :math:`p_\mathrm{Hz}`,
-
 .. math::
 
     \frac{p_\mathrm{Hz}}{\beta E^*} = \bar F_N^{e}, \qquad \kappa = \frac{h_\mathrm{rms}}{\alpha u}
@@ -10,9 +7,6 @@ pressure :math:`p_\mathrm{Hz}`,
     = \left(\frac{k F_N}{R^r E^*}\right)^{e}
 
 with r = 1, e = 1/2, c = 2 and k = 4/pi on the line, and r = 2, e = 1/3, c = pi/2 and k = 3/4 on the ball.
-
-Source: [Bertin & Pouliquen] Eq. (Hertz_scales) and the definitions of :math:`\lambda`, :math:`\bar F_N` and
-:math:`\bar h_\mathrm{rms}` below it for the line; the same with Hertz's contact of a sphere for the ball.
 """
 
 from __future__ import annotations

@@ -1,8 +1,6 @@
 """What a contact has beside its inputs: fluid, cavitation, flow factors, solid, friction of asperities and motion.
 
-The numbers of laws are in SI units with a contact and in Hertz units with groups; :meth:`Parts.model_in` makes them the model
-that the equations see.  Of laws nothing is listed here but the kinds: laws are found in the package of their kind and among
-entry points, see :mod:`stribeck.quantities.registry`, and their numbers in the laws.
+The numbers of laws are in SI units with a contact and in Hertz units with groups.
 """
 
 from __future__ import annotations

@@ -26,11 +26,7 @@ MIN_FRICTION = 1e-300  # Smallest friction in a quotient
 
 
 def friction_share(contact: Any, viscous: Any) -> Any:
-    """Return the part of the friction that asperities cause, zero without friction.
-
-    Parts count by their size: a substrate that the cylinder overtakes is dragged along, and both are negative; near pure
-    rolling they may have different signs.  Both may bring derivatives.
-    """
+    """Return the part of the friction that asperities cause, by size as signs may differ, zero without friction."""
     size = np.abs(contact)
     return size / np.maximum(size + np.abs(viscous), MIN_FRICTION)
 

@@ -119,9 +119,8 @@ def width_inputs(contact: Contact) -> tuple[str, ...]:
 def hertz_units(groups: Groups) -> FilmUnits:
     r"""Return the units in which numbers of laws are given with groups.
 
-    Pressures are in :math:`p_\mathrm{Hz}`, lengths in a and gaps in :math:`u_\mathrm{Hz}`; relaxation times in
-    :math:`u_\mathrm{Hz}/U` and shear stresses in :math:`\eta_0 U/u_\mathrm{Hz}` at the speed group of these groups, and
-    viscosities in :math:`\eta_0`.
+    Pressures are in :math:`p_\mathrm{Hz}`, lengths in a, gaps in :math:`u_\mathrm{Hz}`, times in :math:`u_\mathrm{Hz}/U`,
+    shear stresses in :math:`\eta_0 U/u_\mathrm{Hz}` at the speed group of these groups, and viscosities in :math:`\eta_0`.
     """
     values = []
     for name in ("speed", "relative_roughness"):

@@ -1,7 +1,4 @@
-"""The coordinate of a curve: speed, load or roughness, as read from its arguments.
-
-One group varies, or one SI quantity of a contact, on a logarithmic scale; all else stays.
-"""
+"""The coordinate of a curve: speed, load or roughness, one group or one SI quantity on a logarithmic scale."""
 
 from __future__ import annotations
 

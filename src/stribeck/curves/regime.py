@@ -52,10 +52,7 @@ def check_method(method: str) -> Method:
 def ranges_of(
     values: Array, regimes: Sequence[Regime], transitions: Iterable[Landmark]
 ) -> tuple[tuple[Regime, float, float], ...]:
-    """Return the regimes of points along a curve, ascending: name, and the values between which it holds.
-
-    They meet at a located transition where there is one, else in the middle between two points.
-    """
+    """Return the regimes of points along a curve, ascending, with their ends: located transitions, else halfway."""
     edges = [float(values[0])]
     names = [regimes[0]]
     marks = {mark.name: mark.value for mark in transitions}

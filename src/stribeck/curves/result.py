@@ -271,8 +271,7 @@ class StribeckCurve(Exported, Shown, ByValue):
     def friction(self) -> FrictionArray:
         """Friction coefficients [-]: an array with its parts ``asperities``, ``fluid`` and its ``error``.
 
-        For the coefficients and the definition of the curve; ``friction(boundary_friction, beta, definition)`` returns it for
-        others, each optional.
+        ``friction(boundary_friction, beta, definition)`` returns it for others than those of the curve, each optional.
         """
         found = self._path.friction(self._points)
         assert isinstance(found, FrictionArray)
@@ -299,10 +298,7 @@ class StribeckCurve(Exported, Shown, ByValue):
 
     @cached_property
     def regime_ranges(self) -> tuple[tuple[Regime, float, float], ...]:
-        """Regimes along the curve, ascending: name, and the values between which it holds.
-
-        They meet at a located transition where there is one, else in the middle between two points.
-        """
+        """Regimes along the curve, ascending: name, and the values between which it holds."""
         return ranges_of(self.values, self.regimes, self.transitions)
 
     @property
@@ -335,10 +331,9 @@ class StribeckCurve(Exported, Shown, ByValue):
 
     @cached_property
     def transitions(self) -> tuple[Landmark, ...]:
-        """The boundaries between regimes, where the load is shared in halves, and the friction minimum.
+        """The transitions that the curve holds, ascending, its minimum among them.
 
-        As far as the curve holds them, ascending: where the fluid carries 5 % and 50 % of the load, where asperities cause
-        10 % of the friction, and where friction is at its minimum.
+        They are where the fluid carries 5 % and 50 % of the load, and where asperities cause 10 % of the friction.
         """
         found = [self.landmark(name) for name in Transition]
         return tuple(sorted((mark for mark in found if mark is not None), key=lambda mark: mark.value))
@@ -402,9 +397,7 @@ class StribeckCurve(Exported, Shown, ByValue):
         return {name: np.array([film[name][0] for film in films]) for name in (films[0] if films else ())}
 
     def to_stribeck_model(self) -> StribeckModel:
-        r"""Return the formula of Stribeck friction that simulators of motion take, through this curve.
-
-        .. math:: \mu(v) = \mu_c + (\mu_s - \mu_c) \, e^{-(v/v_s)^\delta} + k v
+        """Return the formula of Stribeck friction that simulators of motion take, through this curve.
 
         Returns
         -------
@@ -419,13 +412,7 @@ class StribeckCurve(Exported, Shown, ByValue):
         return simulator_model(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return settings, minimum, transitions, regimes and the columns of :meth:`to_dataset`, ready for JSON.
-
-        Returns
-        -------
-        dict
-            Numbers, arrays, text, lists and dictionaries of these.
-        """
+        """Return settings, minimum, transitions, regimes and the columns of :meth:`to_dataset`, ready for JSON."""
         return curve_dict(self)
 
     def _labelled(self) -> Labelled:

@@ -47,9 +47,7 @@ def friction_sensitivities(
         = \frac{1}{\mu} \left[ \sum_G n_{GX} \frac{\partial \mu}{\partial \ln G}
         + \left.\frac{\partial \mu}{\partial \ln X}\right|_G \right]
 
-    with G the three groups and n their exponents, ``INPUTS.exponents`` of the contact. The last term is the
-    contact part of the friction for the friction coefficient and the viscous part for beta, and what changes through the
-    fluid and the solid, whose numbers in Hertz units depend on inputs of the contact.
+    with G the three groups, n their exponents, and the last term through coefficients of friction, fluid and solid.
     """
     rtol, definition = check_rtol(rtol), check_definition(definition)
     groups, asperities = contact.groups, contact.friction_of_asperities

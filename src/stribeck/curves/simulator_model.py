@@ -1,7 +1,4 @@
-r"""The formula of Stribeck friction that simulators of motion take, through a computed curve.
-
-.. math:: \mu(v) = \mu_c + (\mu_s - \mu_c) \, e^{-(v/v_s)^\delta} + k v
-"""
+"""The formula of Stribeck friction that simulators of motion take, through a computed curve."""
 
 from __future__ import annotations
 
@@ -26,7 +23,9 @@ ROUGH = 0.1  # Largest relative deviation above which the text says that the for
 
 @dataclass(frozen=True, repr=False)
 class StribeckModel(Record, Told):
-    """Parameters of the usual formula of Stribeck friction, and how far it is from the curve.
+    r"""Parameters of the usual formula of Stribeck friction, and how far it is from the curve.
+
+    .. math:: \mu(v) = \mu_c + (\mu_s - \mu_c) \, e^{-(v/v_s)^\delta} + k v
 
     Examples
     --------

@@ -53,11 +53,7 @@ REACH, PLACES = 8.0, 161  # Half-widths within which asperities count, of a cont
 
 
 def fastest(groups: Groups, boundary_friction: float, beta: float) -> float:
-    """Return the speed group up to which a curve runs, by formulas, for the load and roughness of ``groups``.
-
-    The film is that of smooth surfaces under a cylinder of Hertz's shape; asperities carry the pressure that their law has
-    at this gap.
-    """
+    """Return the speed group up to which a curve runs, by the smooth film and the asperities that still touch at it."""
     law = contact_law(groups)
     x = np.linspace(-REACH, REACH, PLACES)
 
@@ -132,10 +128,9 @@ def no_range(outcome: Outcome, groups: Groups) -> SolveError:
 def automatic_speed_range(
     groups: Groups, boundary_friction: float, beta: float, definition: Definition
 ) -> tuple[float, float]:
-    """Return the speed groups from boundary plateau to hydrodynamic branch for the load and roughness of ``groups``.
+    """Return the speed groups from boundary plateau to hydrodynamic branch, of a coarse curve with the model of the article.
 
-    They are those of a coarse curve with the fluid and the solid of the article: other parts change the load on the film by
-    less than the margin.  Smooth surfaces have no plateau: their curve covers ten decades up to speed 10.
+    Smooth surfaces have no plateau: their curve covers ten decades up to speed 10.
     """
     if groups.geometry == "point":
         return _speeds_of_ball(groups, boundary_friction, beta, definition)
@@ -153,11 +148,10 @@ def automatic_speed_range(
 
 
 def _speeds_of_ball(groups: Groups, boundary_friction: float, beta: float, definition: Definition) -> tuple[float, float]:
-    """Return the speed groups from the boundary plateau of a ball to its hydrodynamic branch.
+    """Return the speed groups from the boundary plateau of a ball to its hydrodynamic branch, on coarse states a decade apart.
 
-    They are found on coarse states a decade apart, down from the speed at which the smooth film is thirty times the
-    roughness, or from the first below it that is solved, to the last that is; smooth surfaces have no plateau, and their
-    curve covers eight decades up to speed 10.
+    They begin where the smooth film is thirty times the roughness, or at the first below that is solved.  Curves of smooth
+    surfaces cover eight decades up to speed 10.
     """
     kappa = float(groups.relative_roughness)
     if kappa == 0:

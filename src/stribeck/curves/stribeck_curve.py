@@ -215,10 +215,7 @@ def begun(
 
 
 def _automatic(coordinate: Coordinate, given: Coefficients, points: int, grows: bool, known: tuple[float, float]) -> Array:
-    """Return speeds from the boundary plateau to the hydrodynamic branch, evenly in the logarithm, within known ones.
-
-    If the curve ``grows`` until it finds its ends, the first speed is the lowest that it may reach.
-    """
+    """Return speeds from plateau to hydrodynamic branch; of a curve that ``grows`` the first is the lowest it may reach."""
     groups = coordinate.groups_at(0.0)
     if grows:
         low, high = SPEEDS[0], fastest(groups, *given[:2])

@@ -2,7 +2,7 @@ r"""One smooth curve through several measured ones, and how far each lies from i
 
 .. math:: \ln \mu_i = f(\ln x_i) + a_{c(i)}
 
-with f a cubic spline.  Whether the curves are one is asked by the F test of a = 0, against a smooth departure of each.
+with f a cubic spline; the F test of a = 0 asks whether the curves are one.
 """
 
 from __future__ import annotations
@@ -163,10 +163,7 @@ def _by_itself(points: Points, size: int) -> Least:
 
 
 def _ratio_error(ratio: float, left: float, estimated: tuple[int, int] | None) -> float:
-    """Return the standard error of a ratio of scatters; where the noise is estimated, by its freedom and what the curves add.
-
-    Sums of squares vary as noncentral ones of chi squared; those that the noise is from are a part of those above it.
-    """
+    """Return the standard error of a ratio of scatters, whose sums of squares vary as noncentral ones of chi squared."""
     if estimated is None:
         excess = max(left * (ratio**2 - 1), 0.0)
         return math.sqrt(2 * (left + 2 * excess)) / (2 * left * ratio)
@@ -201,8 +198,8 @@ def overlapping(points: Points) -> Array:
 def departure(points: Points, curve: int, found: Agreement) -> tuple[float, float, float, float, bool] | None:
     """Return how far a curve lies from the others; None where fewer than three of its rows lie beside them.
 
-    That is the mean of ln(friction) less that of the others, its error, the logarithm of the factor on its abscissa that
-    brings it onto them, nan where none does, its error, and whether it explains the departure better than the mean.
+    That is the mean difference of ln(friction) and its error; the logarithm of the factor on the abscissa that removes it, nan
+    where none does, and its error; and whether this factor explains it better.
     """
     mine = points.curve == curve
     others = points.part(~mine)
@@ -261,10 +258,7 @@ def _shift(mine: Points, others: Least, knots: Array, variance: float, of_others
 
 
 def power_law(points: Points, found: Agreement, logs: Array) -> tuple[float, float, float] | None:
-    """Return the power with which friction at the same abscissa goes with an input, its error and probability of chance.
-
-    None where fewer than three curves lie beside each other.
-    """
+    """Return the power of an input with which friction goes, its error and probability of chance; None below three curves."""
     from scipy.stats import t
 
     beside = _connected(points)

@@ -90,13 +90,7 @@ class Comparison(Exported, Told):
         return Card(self.sentence, [*self.failed.items()], CAVEATS, [head, *rows])
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the laws with their criteria and values, ready for JSON.
-
-        Returns
-        -------
-        dict
-            ``laws``, ``failed``, ``sentence`` and ``caveats``.
-        """
+        """Return the laws with their criteria and values, ready for JSON."""
         laws = [each.to_dict() | {"values": each.fit.to_si()} for each in self.candidates]
         return {"laws": laws, "failed": self.failed, "sentence": self.sentence, "caveats": list(CAVEATS)}
 

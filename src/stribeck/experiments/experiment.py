@@ -232,8 +232,8 @@ def predict_experiment(experiment: Experiment, model: str, on_state: Callable[[i
 
     Notes
     -----
-    Each input is changed by its standard error, and all else follows as in a case file.  Inputs whose error is not known do
-    not count, and are named.  The tolerance of the solver, 1e-6 and 1e-3 of a ball, is added.
+    Each input is changed by its standard error; those without one are named.  The tolerance of the solver, 1e-6 and 1e-3 of a
+    ball, is added.
     """
     inputs = [each for each in experiment.inputs[model] if each.error]
     varied = {key for row in experiment.varied for key in row} - experiment.own[model]

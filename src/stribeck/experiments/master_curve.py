@@ -188,13 +188,7 @@ class MasterCurve(Exported, Told):
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the measures, offsets and powers under their names, ready for JSON.
-
-        Returns
-        -------
-        dict
-            ``collapses``, each with ``offsets`` and ``powers``, ``has_errors``, ``sentence`` and ``notes``.
-        """
+        """Return the measures, offsets and powers, ready for JSON."""
         collapses = [
             each.to_dict()
             | {"offsets": [one.to_dict() for one in each.offsets], "powers": [one.to_dict() for one in each.powers]}

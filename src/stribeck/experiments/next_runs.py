@@ -83,13 +83,7 @@ class Plan(Exported, Told):
         return Card(f"{len(self.runs)} runs worth measuring, the best first", [now], (), table)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the runs and the errors before and after them, ready for JSON.
-
-        Returns
-        -------
-        dict
-            ``runs``, ``errors_before`` and ``noise``.
-        """
+        """Return the runs and the errors before and after them, ready for JSON."""
         return {
             "runs": [each.to_dict() | {"errors": each.errors} for each in self.runs],
             "errors_before": self.before,

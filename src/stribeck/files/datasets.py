@@ -1,7 +1,4 @@
-"""Datasets of xarray as files: NetCDF, Zarr, Parquet and CSV.
-
-The libraries come with the extras ``data`` and ``parquet`` and are imported on first use.
-"""
+"""Datasets of xarray as files, NetCDF, Zarr, Parquet and CSV; the libraries are imported on first use."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Input files and their text, bounded before they are read.
-
-No pipe is waited for, no device and no enormous file fills the memory.
-"""
+"""Input files and their text, bounded before they are read: no pipe, device or enormous file is waited for."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from stribeck.files.datasets import Column, listed, new_dataset, write_csv, write_netcdf, write_parquet, write_zarr
 from stribeck.files.writing import PathLike
-from stribeck.quantities.docstrings import Described, told
+from stribeck.quantities.docstrings import Described, complete_docstring, told
 
 if TYPE_CHECKING:
     import xarray
@@ -20,6 +20,13 @@ Labelled = tuple[Mapping[str, Column], Mapping[str, Column], Mapping[str, Any]]
 
 class Tabled:
     """A result that is a labelled array."""
+
+    def __init_subclass__(cls) -> None:
+        """Say of ``to_dict`` what it returns."""
+        super().__init_subclass__()
+        method = vars(cls).get("to_dict")
+        if method is not None and "Returns" not in method.__doc__:
+            method.__doc__ = complete_docstring(method, {}, "dict\n    Numbers, text, lists and dictionaries of these.")
 
     def _labelled(self) -> Labelled:
         raise NotImplementedError
@@ -43,9 +50,8 @@ class Tabled:
 class Record(Described, Tabled):
     """A result of a few numbers or words, of which many may stand in one table.
 
-    Outputs hold the fields that have a unit, and the properties that the class lists with unit and long name; an empty unit is
-    that of the record itself, its attribute ``unit``. Two numbers, the ends of an interval, become two variables, such as
-    ``low_95`` and ``high_95`` of ``interval_95``.
+    Outputs hold the fields that have a unit (an empty one is the attribute ``unit``) and the properties that the class lists;
+    the ends of ``interval_95`` become ``low_95`` and ``high_95``.
     """
 
     _properties: ClassVar[dict[str, tuple[str, str]]] = {}
@@ -58,13 +64,7 @@ class Record(Described, Tabled):
         cls._labels = vars(cls).get("_labels", fields | cls._properties)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the numbers and words under their names, ready for JSON.
-
-        Returns
-        -------
-        dict
-            By the names of the attributes.
-        """
+        """Return the numbers and words under the names of the attributes, ready for JSON."""
         values = {name: getattr(self, name) for name in self._labels}
         return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
 

@@ -1,8 +1,4 @@
-"""Tables in files: separator, header, units, steps, decimal sign, encoding and missing values found or refused.
-
-Measured friction, contact laws, power spectra and heights all come through here.  The caller knows what the columns mean, and
-may say which names it knows.
-"""
+"""Tables in files: separator, header, units, steps, decimal sign, encoding and missing values found or refused."""
 
 from __future__ import annotations
 

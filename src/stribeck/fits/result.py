@@ -205,13 +205,7 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
         return friction, friction * np.exp(-half), friction * np.exp(half)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return values, intervals, tests, rows and outcome under their names, ready for JSON.
-
-        Returns
-        -------
-        dict
-            Numbers, text, lists and dictionaries of these; infinite where an interval is open.
-        """
+        """Return values, intervals (infinite where open), tests, rows and outcome, ready for JSON."""
         quality = {name: getattr(self.quality, name) for name in self.quality.__dataclass_fields__}
         return {
             "converged": self.converged,

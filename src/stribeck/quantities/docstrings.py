@@ -1,7 +1,6 @@
 """Docstrings that share their words: what many functions say of an argument, a value or an error is written once.
 
-A field of a result is said where it stands, ``speed: Annotated[float, "the sum of both speeds", "m/s"]``, with its unit if it
-has one, and from there on in the docstring and in files.
+``speed: Annotated[float, "the sum of both speeds", "m/s"]`` says a field of a result in the docstring and in files.
 """
 
 from __future__ import annotations

@@ -1,8 +1,6 @@
 """The tables of observables: name, label, meaning, scale and kind of error of each number that a solved state has.
 
-Results, files, sweeps, reports and the explorer read them: one row is one observable everywhere.  The table of the line is
-the one that the names of this module are about.  How it is computed stands in
-:mod:`stribeck.equations.observables`.
+Results, files, sweeps, reports and the explorer read them.  The names of this module are about the line.
 """
 
 from __future__ import annotations

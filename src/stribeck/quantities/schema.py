@@ -1,13 +1,12 @@
-"""What any part of the package needs to know of one number: it stands once, where the number is declared.
+"""What any part of the package needs to know of one number stands once, where the number is declared.
 
-An :class:`Input` in the body of a :func:`law` declares a field of it::
+A field of a law is, for example::
 
     @law
     class Carreau(RateLaw):
         relaxation_time: Input = Input(label="relaxation time", symbol="$t$", dimension="time", typical="1 ms", ...)
 
-The field takes text with a unit or a number in SI units, and holds a number in SI units within its range,
-and the docstring of the class says so.
+The field takes text with a unit or a number in SI units and holds a number within its range; the docstring says so.
 """
 
 from __future__ import annotations

@@ -1,8 +1,6 @@
-"""Text with units to SI numbers, at the border of the package.
+"""Text with units to SI numbers, at the border of the package: no other module knows what a unit is.
 
-Inside the package everything is dimensionless; this module is the only one that knows what a unit is. Numbers
-are read here and only the unit itself is handed to pint, because pint reads "1,5 MPa" as 15 MPa and
-"10 mPas" as ten millipascals.
+Only the unit is handed to pint, which reads "1,5 MPa" as 15 MPa and "10 mPas" as ten millipascals.
 """
 
 from __future__ import annotations

@@ -74,8 +74,7 @@ def _sigma(
 def _slopes(there: Contact, by_friction: bool, definition: Definition) -> dict[str, float]:
     r"""Return the derivatives of the share that decides on the regime, over a factor that all have in common.
 
-    Friction is :math:`\mu = k S + V`, so that its derivatives at k and k/2 hold those of S and V.  With a coefficient S is the
-    asperities' share of the load.
+    Friction is :math:`\mu = k S + V`: its derivatives at k and k/2 hold those of S and V.
     """
     asperities = there.friction_of_asperities if by_friction else Coulomb(1.0)
     whole, half = (

@@ -84,10 +84,7 @@ def limits(contact: Contact, name: str) -> tuple[float, float]:
 
 
 def _possible_factors(contact: Contact, name: str) -> tuple[float, float]:
-    """Return the logarithms of the factors that lead to the bounds of an input.
-
-    Of the speed also to those of the viscosity, whose margins it gives.
-    """
+    """Return the logarithms of the factors to the bounds of an input, of the speed also to those of the viscosity."""
     is_for_both = name == "speed" and not contact.friction_of_asperities.uses_speed
     names = ("speed", "viscosity") if is_for_both else (name,)
     ends = [(getattr(contact, each), physical_bounds(contact, each)) for each in names]

@@ -34,11 +34,7 @@ CURVE_POINTS = 41  # Points of the curve on which transitions are looked for, wh
 
 @dataclass(frozen=True)
 class Overview(Tabled):
-    """Everything about the regime of a contact.
-
-    Its dataset has the numbers of the state, the margins along ``crossing``, the marks of the curve along ``transition`` and
-    the sensitivities of friction along ``sensitive_to``.
-    """
+    """Everything about the regime of a contact: its state, margins, marks of its curve, and what moves its friction."""
 
     case: Case  # The case
     solution: Solution  # Its state

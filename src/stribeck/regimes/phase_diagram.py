@@ -1,8 +1,4 @@
-"""The phase diagram: regimes and friction over speed, load and roughness, and the transitions between regimes.
-
-Each pair of load and roughness is one curve over the speed, independent of the others.  The transitions are located on states
-solved there, also where they lie outside the speeds of the grid.
-"""
+"""The phase diagram: regimes and friction over speed, load and roughness, and the transitions between regimes."""
 
 from __future__ import annotations
 

@@ -35,11 +35,10 @@ def transition_speeds(
     speeds: tuple[float, float] | None = None,
     narrowings: int = MAX_NARROWINGS,
 ) -> tuple[Array, Array]:
-    """Return the speed groups at which the regimes of many contacts of one load pass into each other, off the atlas.
+    """Return the speed groups of the transitions of many contacts of one load, off the atlas, and errors of their logarithms.
 
-    They are where the fluid begins to carry more than 5 % of the load, and asperities cause no more than 10 % of the friction,
-    zero or infinite where they do or do not at all speeds; and where friction is at its minimum, nan where that is not between
-    the speeds.  With them come the errors of their logarithms, from the stated errors of the table, both of shape (3, n).
+    They are where the fluid begins to carry more than 5 % of the load and asperities to cause less than 10 % of the friction,
+    zero or infinite if they do at all speeds or at none, and of the minimum, or nan; both arrays have the shape (3, n).
     """
     row = table_for(groups)
     roughness = np.atleast_1d(np.asarray(groups.roughness, dtype=float))
@@ -74,10 +73,9 @@ def transition_speeds(
 def _passages(
     signs: Callable[[Array, Array], Array], grid: Array, roughness: Array, narrowings: int, stated: float
 ) -> tuple[Array, Array]:
-    """Return where each function passes from below to above zero in each row, and errors, shape (3, rows).
+    """Return the logarithms of the speed at which each function rises through zero in each row, and errors, shape (3, rows).
 
-    Logarithms of the speed; -inf or inf where it is above or below at all speeds.  The printed viscous friction lets friction
-    rise before it falls, so that its minimum is the last passage; the others are the first, from below at the lowest speed.
+    The minimum is the last passage, as the printed friction may rise before it falls; of the others it is the first.
     """
     values = signs(*np.broadcast_arrays(grid, roughness[:, None]))
     rising = (values[..., :-1] < 0) & (values[..., 1:] >= 0)

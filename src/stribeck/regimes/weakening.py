@@ -1,7 +1,4 @@
-r"""Where the velocity-weakening branch disappears: the roughness from which friction only grows with speed.
-
-With roughness the minimum of a Stribeck curve rises and meets the maximum before it; beyond, boundary lubrication passes to
-hydrodynamic without weakening, and the two lines of transition have merged.  All of it on solved curves.
+"""The roughness from which friction only grows with speed: minimum and maximum of the curve have met.
 
 Source: [BP] Conclusion, which names a minimum that exceeds boundary_friction and a branch that disappears as one: they
 are two, this the second.
@@ -42,10 +39,9 @@ KAPPA_STEP = 3.0
 
 
 def minimum_behind(path: FrictionPath) -> tuple[float, tuple[float, float] | None]:
-    r"""Return the least slope along a path over the speed, and where friction falls, speed and friction of its minimum there.
+    """Return the least slope along a path over the speed, and where friction falls, speed and friction of its minimum there.
 
-    The slope is :math:`\mathrm{d}\mu/\mathrm{d}\ln U` over the published viscous friction: 1 far down on the plateau, 0.4 to
-    0.7 on the hydrodynamic branch, negative where friction falls.
+    The slope over the published viscous friction is 1 far down on the plateau, and 0.4 to 0.7 on the hydrodynamic branch.
     """
     published = replace(path, definition="published")
 

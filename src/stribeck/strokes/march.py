@@ -1,8 +1,8 @@
-r"""The march in time: implicit steps of second order of the film, and what is read off each.
+r"""The march in time: implicit steps of second order of the film (BDF2, first a step of implicit Euler).
 
 .. math:: \tau \partial_t h \approx \frac{1 + 2r}{1 + r} h_n - (1 + r) h_{n-1} + \frac{r^2}{1 + r} h_{n-2}
 
-with the step :math:`\tau` and r its ratio to the step before (BDF2); the first step is one of implicit Euler.
+with the step :math:`\tau` and r its ratio to the step before.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -17,81 +17,32 @@ from stribeck.quantities.results import ByValue, Card, Told
 
 __all__ = ["Stroke"]
 
-COLUMNS = {
-    "friction": ("1", "friction coefficient, with the sign of the force against the motion"),
-    "friction_asperities": ("1", "its part by asperities"),
-    "friction_fluid": ("1", "its part by the fluid"),
-    "contact_load_share": ("1", "share of the load on asperities"),
-    "central_gap": ("m", "gap at the centre"),
-    "minimum_gap": ("m", "minimum gap"),
-    "left_flow": ("m2/s", "liquid that passes the left edge of the dry contact, to the right"),
-    "right_flow": ("m2/s", "liquid that passes the right edge of the dry contact, to the right"),
-}
-"""Unit and meaning of the numbers over time."""
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Stroke(Exported, Told, ByValue):
-    """Friction and films of a line contact over time, in SI units.
-
-    Attributes
-    ----------
-    contact : LineContact
-        The contact; its speed is the largest of the motion.
-    motion : Motion
-        The motion.
-    cycles : int
-        Times that it was repeated.
-    half_width : float
-        Half-width of the dry contact [m].
-    time : ndarray, shape (n,)
-        Instants [s].
-    speed : ndarray, shape (n,)
-        Sliding speed, negative on the way back [m/s].
-    position : ndarray, shape (n,)
-        Position of the moving surface [m].
-    friction : ndarray, shape (n,)
-        Friction coefficient, with the sign of the force against the motion [-].
-    friction_asperities, friction_fluid : ndarray, shape (n,)
-        Its two parts [-]; that of asperities is zero at the instant of a reversal.
-    contact_load_share : ndarray, shape (n,)
-        Share of the load on asperities [-].
-    central_gap, minimum_gap : ndarray, shape (n,)
-        Gap at the centre, and the smallest [m].
-    left_flow, right_flow : ndarray, shape (n,)
-        Liquid that passes the edges of the dry contact per length and time, to the right [m2/s]; on the way out it comes from
-        the left.
-    errors : dict
-        Estimated absolute error of each of these eight, shape (n,), by name, in its unit.
-    work : float
-        Work of friction per length of the contact in the last cycle, or in the whole motion [J/m].
-    work_error : float
-        Its estimated error [J/m].
-    notes : tuple of str
-        What to know before using the numbers.
-    """
+    """Friction and films of a line contact over time, in SI units."""
 
     _picture = "stribeck.plot.strokes.plot_stroke"
 
-    contact: Contact
-    motion: Motion = field(repr=False)
-    cycles: int
-    half_width: float
-    time: Array
-    speed: Array
-    position: Array
-    friction: Array
-    friction_asperities: Array
-    friction_fluid: Array
-    contact_load_share: Array
-    central_gap: Array
-    minimum_gap: Array
-    left_flow: Array
-    right_flow: Array
-    errors: dict[str, Array]
-    work: float
-    work_error: float
-    notes: tuple[str, ...] = ()
+    contact: Annotated[Contact, "the contact; its speed is the largest of the motion"]
+    motion: Annotated[Motion, "the motion"] = field(repr=False)
+    cycles: Annotated[int, "times that it was repeated"]
+    half_width: Annotated[float, "half-width of the dry contact", "m"]
+    time: Annotated[Array, "instants", "s"]
+    speed: Annotated[Array, "sliding speed, negative on the way back", "m/s"]
+    position: Annotated[Array, "position of the moving surface", "m"]
+    friction: Annotated[Array, "friction coefficient, with the sign of the force against the motion", "1"]
+    friction_asperities: Annotated[Array, "its part by asperities, zero at the instant of a reversal", "1"]
+    friction_fluid: Annotated[Array, "its part by the fluid", "1"]
+    contact_load_share: Annotated[Array, "share of the load on asperities", "1"]
+    central_gap: Annotated[Array, "gap at the centre", "m"]
+    minimum_gap: Annotated[Array, "minimum gap", "m"]
+    left_flow: Annotated[Array, "liquid that passes the left edge of the dry contact, to the right", "m2/s"]
+    right_flow: Annotated[Array, "liquid that passes the right edge of the dry contact, to the right", "m2/s"]
+    errors: Annotated[dict[str, Array], "estimated absolute errors of the eight before it, by name, in their units"]
+    work: Annotated[float, "work of friction per length of the contact in the last cycle, or in the whole motion", "J/m"]
+    work_error: Annotated[float, "its estimated error", "J/m"]
+    notes: Annotated[tuple[str, ...], "what to know before using the numbers"] = ()
 
     @property
     def last_cycle(self) -> slice:
@@ -114,13 +65,7 @@ class Stroke(Exported, Told, ByValue):
         return float(np.ptp(self.position) / self.half_width)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the numbers over time, and those of the last cycle, ready for JSON.
-
-        Returns
-        -------
-        dict
-            By the names of the attributes, with ``..._error`` behind those that have one.
-        """
+        """Return the numbers over time, and those of the last cycle, with their errors, ready for JSON."""
         found: dict[str, Any] = {name: getattr(self, name) for name in ("cycles", "half_width", "half_widths")}
         found |= {
             "largest_contact_load_share": self.largest_contact_load_share,
@@ -155,14 +100,14 @@ class Stroke(Exported, Told, ByValue):
         return Card(f"friction and films of {of}, {len(self.time) - 1} steps", rows, self.notes)
 
     def _labelled(self) -> Labelled:
-        columns: dict[str, Column] = {name: ("time", getattr(self, name), *words) for name, words in COLUMNS.items()}
+        names = (*self.errors, "speed", "position")
+        said = {name: (self._words[name].unit or "1", self._words[name].meaning) for name in names}
+        columns: dict[str, Column] = {name: ("time", getattr(self, name), *words) for name, words in said.items()}
         columns |= {
-            f"{name}_error": ("time", self.errors[name], unit, f"estimated error of the {words.partition(',')[0]}")
-            for name, (unit, words) in COLUMNS.items()
+            f"{name}_error": ("time", error, said[name][0], f"estimated error of the {said[name][1].partition(',')[0]}")
+            for name, error in self.errors.items()
         }
         columns |= {
-            "speed": ("time", self.speed, "m/s", "sliding speed, negative on the way back"),
-            "position": ("time", self.position, "m", "position of the moving surface"),
             "work": ((), self.work, "J/m", "work of friction per length in the last cycle"),
             "work_error": ((), self.work_error, "J/m", "estimated error of the work of friction"),
         }

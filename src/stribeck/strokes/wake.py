@@ -1,12 +1,7 @@
-r"""The liquid beside a contact that runs into its own wake, and how much of it the contact can draw in.
+"""The liquid beside a contact that runs into its own wake, and how much of it the contact can draw in.
 
-At either edge of the dry contact the liquid that passes is counted.  What has passed a trailing edge lies on the surface at
-the position at which it passed; a leading edge reaches it as the surface comes back.  What it reaches and does not draw in,
-it pushes ahead.  With the liquid T on one side, and that part U of it that the contact has not reached, all in all
-
-.. math:: T \ge U
-
-Surface that the contact has not passed is flooded.
+What has passed a trailing edge lies on the surface where it passed; a leading edge that comes back draws it in, and pushes
+ahead what it does not.  On either side the liquid T is no less than the part of it that the contact has not reached.
 """
 
 from __future__ import annotations

@@ -1,15 +1,13 @@
-r"""From a measured topography to the roughness of a case: rms height, spectrum, alpha, beta and the whole contact law.
+"""From a measured topography to the roughness of a case: rms height, spectrum, alpha, beta and the whole contact law.
 
-    read_topography -> repaired -> detrended -> power_spectrum -> fit_self_affine -> exponential_limit, persson_law
-
-:func:`analyse` does all of it and keeps what was found on the way.  How well is in docs/surfaces.md.
+Each step is a function of its own: read, repair, detrend, spectrum, fit, contact law.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -40,44 +38,20 @@ WAVES = {"q0": "longest wavelength", "roll_off": "roll-off wavelength", "q1": "s
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Surface(Exported, Told):
-    """What a scan says of a surface; its dataset has its numbers in SI units, each with its error or interval.
-
-    Attributes
-    ----------
-    topography : Topography
-        Roughness that was evaluated: filled, and without its trend.
-    shape : Form
-        The trend, with the radius of the body.
-    measured : MeasuredSpectrum
-        Spectrum of the scan.
-    fit : SelfAffineFit
-        Self-affine spectrum through it.
-    gamma : float
-        Reduction of the elastic energy in Persson's theory [-].
-    departures : Departures
-        Texture and skewness, which Persson's theory takes as none.
-    spikes : int
-        Number of spikes that were replaced.
-    height_with_spikes : float
-        Rms height of the scan with its spikes [m].
-    window : {"hann", "none"}
-        Window of the spectrum.
-    notes : tuple of str
-        What must be known before the numbers are used.
-    """
+    """What a scan says of a surface; its dataset has its numbers in SI units, each with its error or interval."""
 
     _picture = "stribeck.plot.surface.plot_surface"
 
-    topography: Topography
-    shape: Form
-    measured: MeasuredSpectrum
-    fit: SelfAffineFit
-    gamma: float
-    departures: Departures
-    spikes: int
-    height_with_spikes: float
-    window: Window = "hann"
-    notes: tuple[str, ...] = field(default=())
+    topography: Annotated[Topography, "roughness that was evaluated: filled, and without its trend"]
+    shape: Annotated[Form, "the trend, with the radius of the body"]
+    measured: Annotated[MeasuredSpectrum, "spectrum of the scan"]
+    fit: Annotated[SelfAffineFit, "self-affine spectrum through it"]
+    gamma: Annotated[float, "reduction of the elastic energy in Persson's theory", "1"]
+    departures: Annotated[Departures, "texture and skewness, which Persson's theory takes as none"]
+    spikes: Annotated[int, "number of spikes that were replaced"]
+    height_with_spikes: Annotated[float, "rms height of the scan with its spikes", "m"]
+    window: Annotated[Window, "window of the spectrum"] = "hann"
+    notes: Annotated[tuple[str, ...], "what must be known before the numbers are used"] = field(default=())
 
     @property
     def rms_height(self) -> float:
@@ -101,10 +75,7 @@ class Surface(Exported, Told):
 
     @cached_property
     def spectrum(self) -> Spectrum:
-        """The measured spectrum of the surface, with the fit where longer waves are not reliable.
-
-        A line gives it by the ratio of the two spectra of the fit at each wave number, which is right where the fit is.
-        """
+        """The measured spectrum of the surface; where longer waves are not reliable, and of a line, by that of the fit."""
         r, line = self.roughness, self.measured.is_line
         seen = self.measured.reliable & np.asarray(self.measured.density > 0)
         q = self.measured.wavenumber[seen]
@@ -202,13 +173,7 @@ class Surface(Exported, Told):
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the numbers of :meth:`to_dataset` in SI units, with what was analysed, ready for JSON.
-
-        Returns
-        -------
-        dict
-            Numbers, nan where nothing was found, and text.
-        """
+        """Return the numbers of :meth:`to_dataset` in SI units, nan where nothing was found, ready for JSON."""
         return self._about | plain_numbers(self.numbers) | {"notes": list(self.notes)}
 
     def _labelled(self) -> Labelled:

@@ -1,19 +1,19 @@
 r"""How a scan departs from the theory's surface, which is isotropic and Gaussian, and from sizes that instruments have.
 
-The texture is read off the second angular harmonic of the spectrum over its ring,
-
 .. math:: A = \frac{\langle C\, e^{2 i \theta} \rangle}{\langle C \rangle}
 
-which is zero on average for an isotropic surface, with a mean square of one over the number of modes.
+is zero on average for an isotropic surface, with a mean square of one over the number of modes.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
+from stribeck.quantities.docstrings import Described
 from stribeck.quantities.formats import format_si
 from stribeck.surfaces.height_parameters import moment
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum
@@ -39,26 +39,13 @@ MAX_RMS_SLOPE = 3.0  # Rms slope between neighbouring points above which the uni
 
 
 @dataclass(frozen=True)
-class Departures:
-    """Texture and skewness of a scan.
+class Departures(Described):
+    """Texture and skewness of a scan."""
 
-    Attributes
-    ----------
-    aspect_ratio : float or None
-        How many times longer features are along the texture than across it, 1 if isotropic; None for a line, which does
-        not show it.
-    direction : float or None
-        Angle of the texture to the first axis, 0 to pi [rad]; None if it is not significant.
-    skewness : float
-        Third moment of the heights over the cube of their rms; 0 if Gaussian.
-    skewness_error : float
-        Its standard error for Gaussian heights with the correlation of the scan.
-    """
-
-    aspect_ratio: float | None
-    direction: float | None
-    skewness: float
-    skewness_error: float
+    aspect_ratio: Annotated[float | None, "length of features along the texture over that across it; None for a line"]
+    direction: Annotated[float | None, "angle of the texture to the first axis, 0 to pi; None if it is not significant", "rad"]
+    skewness: Annotated[float, "third moment of the heights over the cube of their rms; 0 if Gaussian", "1"]
+    skewness_error: Annotated[float, "its standard error for Gaussian heights with the correlation of the scan", "1"]
 
 
 def departures(topography: Topography, measured: MeasuredSpectrum, hurst: float) -> Departures:

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.spectrum import SelfAffine
+from stribeck.quantities.docstrings import Described
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.surfaces.topography import Topography
 
@@ -25,25 +26,13 @@ TRENDS = ("none", "mean", "tilt", "curvature")
 
 
 @dataclass(frozen=True)
-class Form:
-    """What was taken away from the heights.
+class Form(Described):
+    """What was taken away from the heights."""
 
-    Attributes
-    ----------
-    trend : {"none", "mean", "tilt", "curvature"}
-        What was fitted.
-    tilt : tuple of float
-        Slope along each axis at the middle of the scan [1].
-    curvatures : tuple of float
-        Principal curvatures, the strongest first [1/m]; empty where none were fitted.
-    direction : float
-        Angle of the strongest curvature to the first axis [rad].
-    """
-
-    trend: Trend
-    tilt: tuple[float, ...] = ()
-    curvatures: tuple[float, ...] = ()
-    direction: float = 0.0
+    trend: Annotated[Trend, "what was fitted"]
+    tilt: Annotated[tuple[float, ...], "slope along each axis at the middle of the scan", "1"] = ()
+    curvatures: Annotated[tuple[float, ...], "principal curvatures, the strongest first, if fitted", "1/m"] = ()
+    direction: Annotated[float, "angle of the strongest curvature to the first axis", "rad"] = 0.0
     _weights: Array = field(default_factory=lambda: np.empty(0), repr=False, compare=False)
 
     @property

@@ -1,7 +1,6 @@
-r"""The fit of a self-affine spectrum: the spectrum, its standard errors, and intervals of alpha and beta.
+"""The fit of a self-affine spectrum: the spectrum, its standard errors, and intervals of alpha and beta.
 
-A scan does not show waves longer than itself, nor shorter than a few of its points.  So the longest wave of the surface can
-only be longer and the shortest only shorter, and an interval of alpha or beta holds the values for all of them.
+Waves longer than a scan or shorter than a few of its points are not seen: an interval holds the values for all of them.
 """
 
 from __future__ import annotations
@@ -10,12 +9,14 @@ import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.persson import GAMMA, exponential_limit
 from stribeck.contact_laws.spectrum import SelfAffine
+from stribeck.quantities.docstrings import Described
 from stribeck.surfaces.measured_spectrum import line_density
 
 __all__ = ["Estimate", "FitParameters", "SelfAffineFit", "central_differences"]
@@ -29,20 +30,12 @@ SHORTEST_WAVE = 1e-9  # Shortest wave of any surface: a few atoms [m]
 
 
 @dataclass(frozen=True)
-class Estimate:
-    """A number with its 95 % interval.
+class Estimate(Described):
+    """A number with its 95 % interval."""
 
-    Attributes
-    ----------
-    value : float
-        The number, for a surface without waves longer or shorter than those seen.
-    low, high : float
-        Ends of the interval; ``low`` is 0 for a positive number that is only bounded from above.
-    """
-
-    value: float
-    low: float
-    high: float
+    value: Annotated[float, "the number, for a surface without waves longer or shorter than those seen"]
+    low: Annotated[float, "lower end; 0 for a positive number that is only bounded from above"]
+    high: Annotated[float, "upper end"]
 
     @property
     def interval(self) -> str:
@@ -107,31 +100,15 @@ class FitParameters:
 
 
 @dataclass(frozen=True, eq=False)
-class SelfAffineFit:
-    r"""Self-affine spectrum that fits a measured one.
+class SelfAffineFit(Described):
+    """Self-affine spectrum that fits a measured one."""
 
-    Attributes
-    ----------
-    roughness : SelfAffine
-        The spectrum; its ends are cut-offs of the surface where they were found, else those of the scan.
-    errors : dict of str to float
-        Standard errors of ``h_rms`` [m], ``q0``, ``roll_off``, ``q1`` [1/m] and ``hurst`` [-]; only of what was found.
-    found : tuple of str
-        Which of ``roll_off``, ``q0``, ``q1`` and ``noise`` the spectrum shows.
-    noise : float
-        Spectrum of the white noise, as that of the measurement; 0 where none was found.
-    deviance : float
-        Deviance over its expectation: near one where the model holds.
-    band : tuple of float
-        Wave numbers that were fitted [1/m].
-    """
-
-    roughness: SelfAffine
-    errors: dict[str, float]
-    found: tuple[str, ...]
-    noise: float
-    deviance: float
-    band: tuple[float, float]
+    roughness: Annotated[SelfAffine, "the spectrum; its ends are cut-offs of the surface if found, else those of the scan"]
+    errors: Annotated[dict[str, float], "standard errors of h_rms [m], q0, roll_off, q1 [1/m] and hurst [-], if found"]
+    found: Annotated[tuple[str, ...], "which of roll_off, q0, q1 and noise the spectrum shows"]
+    noise: Annotated[float, "spectrum of the white noise, as that of the measurement; 0 where none was found"]
+    deviance: Annotated[float, "deviance over its expectation: near one where the model holds", "1"]
+    band: Annotated[tuple[float, float], "wave numbers that were fitted", "1/m"]
     _parameters: FitParameters = field(repr=False)
 
     def exponential_limit(self, gamma: float = GAMMA) -> tuple[Estimate, Estimate]:

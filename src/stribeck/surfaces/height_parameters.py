@@ -5,8 +5,7 @@ r"""Parameters of the heights of a scan as instruments print them: Sa, Sku and S
     S_a = \langle |z| \rangle, \quad S_{ku} = \frac{\langle z^4 \rangle}{\langle z^2 \rangle^2}, \quad
     S_{dq}^2 = \langle |\nabla z|^2 \rangle
 
-of heights about the trend that was removed, with no filter of waves (ISO 25178-2, ISO 4287); the slope is between neighbouring
-points.  Sq and Ssk stand beside the spectrum already.
+about the removed trend, without a filter of waves (ISO 25178-2, ISO 4287); the slope is between neighbouring points.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -45,41 +45,19 @@ LOG_INTEGRAL_END = 14.0  # Upper end of the integral along a line; the rest is b
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MeasuredSpectrum(Shown):
-    r"""Power spectrum of a scan, averaged over rings of wave numbers.
+    """Power spectrum of a scan, averaged over rings of wave numbers."""
 
-    Attributes
-    ----------
-    wavenumber : ndarray
-        Wave number of each ring, the geometric mean of those in it [1/m].
-    density : ndarray
-        Mean of the periodogram: C of a map [m^4], C_1 of a line [m^3].
-    modes : ndarray
-        Effective number of independent modes in each ring; the relative standard error is one over its root.
-    inner : ndarray
-        Wave numbers over which a model is averaged to be compared with each ring, a row for each ring [1/m].
-    is_line : bool
-        Whether it is that of a line.
-    lowest, highest : float
-        Between these wave numbers the spectrum is reliable [1/m].
-    lowest_reason, highest_reason : str
-        What sets these limits.
-    mean_square : float
-        Mean square of the heights under the window [m^2].
-    texture : complex
-        Second angular harmonic of the spectrum over its ring, the mean of the reliable rings; 0 for a line [-].
-    """
-
-    wavenumber: Array
-    density: Array
-    modes: Array
-    inner: Array
-    is_line: bool
-    lowest: float
-    highest: float
-    lowest_reason: str
-    highest_reason: str
-    mean_square: float
-    texture: complex = 0.0
+    wavenumber: Annotated[Array, "wave number of each ring, the geometric mean of those in it", "1/m"]
+    density: Annotated[Array, "mean of the periodogram", "m^4; m^3 of lines"]
+    modes: Annotated[Array, "effective number of independent modes in each ring; one over its root is the relative error"]
+    inner: Annotated[Array, "wave numbers over which a model is averaged, a row for each ring", "1/m"]
+    is_line: Annotated[bool, "whether it is that of a line"]
+    lowest: Annotated[float, "wave number from which the spectrum is reliable", "1/m"]
+    highest: Annotated[float, "wave number up to which it is", "1/m"]
+    lowest_reason: Annotated[str, "what sets the first"]
+    highest_reason: Annotated[str, "what sets the second"]
+    mean_square: Annotated[float, "mean square of the heights under the window", "m^2"]
+    texture: Annotated[complex, "second angular harmonic of the spectrum over its ring; 0 for a line", "1"] = 0.0
 
     @property
     def reliable(self) -> Flags:

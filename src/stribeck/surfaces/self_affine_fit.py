@@ -1,12 +1,9 @@
 r"""Fit of a self-affine spectrum to a measured one, with its uncertainty.
 
-Each ring of the periodogram is a mean of ``n`` exponentially distributed numbers about the spectrum ``M``, so the
-likelihood is Whittle's, and twice its distance from the best possible one is the deviance
-
 .. math:: D = 2 \sum_b n_b \left[\frac{P_b}{M_b} - 1 - \ln\frac{P_b}{M_b}\right]
 
-The model is a power law with or without a roll-off, with or without a sharp long or short cut-off inside the scan, and with
-or without white noise of the instrument; the smallest deviance plus ``k ln(sum n)`` for its ``k`` parameters decides.
+is the deviance of the spectrum M from rings P of the periodogram, each a mean of n exponentially distributed numbers.
+Roll-off, sharp cut-offs and white noise are kept where they lower ``D + k ln(sum n)``, for k parameters.
 
 Source: [Whittle53]; [Schwarz78] for the penalty.
 """

@@ -1,19 +1,11 @@
-r"""Several scans of one surface: their mean spectrum, the law of it, and intervals from their scatter.
-
-The rings of all scans are fitted together; rings that are the same are averaged, weighted by their modes.  The interval of a
-number is the wider of what the fit states and of
-
-.. math:: \bar y \pm t_{0.975,\, n-1} \frac{s}{\sqrt n}
-
-with the standard deviation s of the numbers of the n scans, in logarithms where they are positive.
-"""
+"""Several scans of one surface: their mean spectrum, the law of it, and intervals from their scatter."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -42,36 +34,18 @@ SAME_RING = 1e-9  # Relative difference of two wave numbers that are the same ri
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CombinedSurface(Exported, Told):
-    """What several scans say of one surface; its dataset has its numbers in SI units, each with its interval.
-
-    Attributes
-    ----------
-    surfaces : tuple of Surface
-        The scans, each by itself.
-    measured : MeasuredSpectrum
-        Mean spectrum of all scans.
-    scatter : ndarray
-        Standard error of each mean by the scatter of the scans, nan where one shows it [m^4; m^3 of lines].
-    fit : SelfAffineFit
-        Self-affine spectrum through all rings; 1.96 of its errors are half of the 95 % intervals, scatter included.
-    alpha, beta : Estimate
-        Decay and scale of the contact law, with their 95 % intervals [-].
-    gamma : float
-        Reduction of the elastic energy in Persson's theory [-].
-    notes : tuple of str
-        What must be known before the numbers are used.
-    """
+    """What several scans say of one surface; its dataset has its numbers in SI units, each with its interval."""
 
     _picture = "stribeck.plot.surface.plot_combined_surface"
 
-    surfaces: tuple[Surface, ...]
-    measured: MeasuredSpectrum
-    scatter: Array
-    fit: SelfAffineFit
-    alpha: Estimate
-    beta: Estimate
-    gamma: float
-    notes: tuple[str, ...] = field(default=())
+    surfaces: Annotated[tuple[Surface, ...], "the scans, each by itself"]
+    measured: Annotated[MeasuredSpectrum, "mean spectrum of all scans"]
+    scatter: Annotated[Array, "standard error of each mean by the scatter; nan where one scan shows it", "m^4; m^3 of lines"]
+    fit: Annotated[SelfAffineFit, "self-affine spectrum through all rings; its errors include the scatter"]
+    alpha: Annotated[Estimate, "decay of the contact law [-], with its 95 % interval"]
+    beta: Annotated[Estimate, "scale of the contact law [-], with its 95 % interval"]
+    gamma: Annotated[float, "reduction of the elastic energy in Persson's theory", "1"]
+    notes: Annotated[tuple[str, ...], "what must be known before the numbers are used"] = field(default=())
 
     @property
     def roughness(self) -> SelfAffine:
@@ -150,13 +124,7 @@ class CombinedSurface(Exported, Told):
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the numbers of :meth:`to_dataset` in SI units, with the scans, ready for JSON.
-
-        Returns
-        -------
-        dict
-            Numbers and text; ``scans`` has what each scan says by itself.
-        """
+        """Return the numbers of :meth:`to_dataset` in SI units, and what each scan says by itself, ready for JSON."""
         about = {"scans": [each.to_dict() for each in self.surfaces], "found": list(self.fit.found)}
         return about | plain_numbers(self.numbers) | {"relative_errors": self.errors, "notes": list(self.notes)}
 
@@ -177,8 +145,8 @@ def combine(surfaces: Sequence[Surface]) -> CombinedSurface:
 
     .. math:: \bar y \pm t_{0.975,\, n-1} \frac{s}{\sqrt n}
 
-    for each number y of the n scans, with their standard deviation s; an interval of the law is never narrower than what the
-    fit of the mean spectrum states.
+    for each number y of the n scans, or its logarithm, with their standard deviation s; an interval of the law is never
+    narrower than what the fit of the mean spectrum states.
 
     Parameters
     ----------
@@ -199,6 +167,7 @@ def combine(surfaces: Sequence[Surface]) -> CombinedSurface:
     -----
     The places must be independent: scans that overlap scatter less than the surface does.  Two scans have wide intervals
     (t = 12.7), four have t = 3.2.  How often intervals hold the truth is in docs/surfaces.md.
+
     Source: Student's interval of a mean; [Whittle53] for the fit of all rings.
 
     Examples

@@ -1,8 +1,7 @@
 """Heights from plain text: CSV, TSV and XYZ files of any separator, decimal comma or point, with declared units.
 
-What the columns are follows from their number: 1 heights along a line; 2 position and height; 3 x, y and height of the
-points of a grid, in any order; many a matrix of heights, a line of the scan in each row.  Columns that number the rows, and
-empty ones, count for nothing.
+One column is heights along a line, two are position and height, three x, y and height of a grid in any order, many a matrix
+with a line of the scan in each row.  Columns that number the rows, and empty ones, count for nothing.
 """
 
 from __future__ import annotations

@@ -1,8 +1,4 @@
-r"""Measured heights of a surface: maps and lines, dead pixels and spikes, and surfaces made with a known spectrum.
-
-Reading files is in :mod:`stribeck.surfaces.files` and :mod:`stribeck.surfaces.text`, evaluation in
-:mod:`stribeck.surfaces.analysis`.
-"""
+"""Measured heights of a surface: maps and lines, dead pixels and spikes, and surfaces made with a known spectrum."""
 
 from __future__ import annotations
 
@@ -126,9 +122,8 @@ class Topography:
         -----
         A spike is a single point whose distance from the median of its 8 neighbours (4 on each side in a profile) is more
         than 4 times the range of their heights, and more than 12 times the robust standard deviation of that distance in the
-        scan.  A summit, or anything wider than a point, is never one: beside a steep flank the neighbours' own range is
-        large.  Filled heights solve Laplace's equation with the heights around as boundary values; they are smoother than
-        the surface, which lowers the power of short waves by about the share of filled points.
+        scan.  Filled heights solve Laplace's equation between the heights around; this lowers the power of short waves by
+        about the share of filled points.
         """
         dead, spikes = np.isnan(self.heights), np.zeros(self.heights.shape, dtype=bool)
         if not keep_spikes:

@@ -68,13 +68,7 @@ class Sweep(Exported, Told, ByValue):
         return {name: count for name, count in Counter(self.outcome).most_common() if name != PENDING}
 
     def to_dict(self) -> dict[str, Any]:
-        """Return how many states there are and how they ended, ready for JSON.
-
-        Returns
-        -------
-        dict
-            Numbers and text; the states themselves are in :meth:`to_dataset`.
-        """
+        """Return how many states there are and how they ended, ready for JSON."""
         own = ("finished", "failed", "outcomes", "computed", "seconds", "interrupted")
         found = {"title": self.about["title"], "store": str(self.path), "states": len(self), "rtol": self.about["rtol"]}
         return found | {name: getattr(self, name) for name in own}

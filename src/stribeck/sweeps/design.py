@@ -1,7 +1,4 @@
-"""Sweep files: a TOML file that says what varies becomes a checked design, all states of which are possible.
-
-As with case files, everything that is wrong is reported at once, a sentence for each problem that names the key.
-"""
+"""Sweep files: TOML that says what varies becomes a checked design, all states of which are possible."""
 
 from __future__ import annotations
 

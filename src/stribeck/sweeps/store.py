@@ -5,8 +5,8 @@
     states    numbers, outcome and message of the states that have ended; NULL is nan
 
 The sweep that fills a store holds its write lock but for the moment of each commit, and its name stands in ``about`` under
-``writer``.  Another that gets the lock in such a moment sees the name, lets go and tries again; if it gets the lock each time,
-the first is dead, and it enters its own name.  So no two of them write, also where a file system does not lock.
+``writer``.  Another that gets the lock in such a moment sees the name and tries again; if it gets the lock each time, the
+first is dead.  So no two of them write, also where a file system does not lock.
 """
 
 from __future__ import annotations

@@ -66,8 +66,7 @@ def propagate(
     errors : mapping or "typical"
         Standard error of each uncertain input: a number over the value (0.2 is 20 %), or text, ``"20 %"`` or ``"0.2 um"``.
         Numbers of the fluid and the solid are among the inputs, as ``relaxation_time`` or ``layer_thickness``.
-        ``"typical"`` takes what inputs usually have that nobody measured on the contact itself: beta 30 %, dry friction,
-        roughness and modulus 20 %, viscosity 10 %, load and alpha 5 %, radius 2 %.
+        ``"typical"`` takes the usual ones of inputs that nobody measured on the contact itself (docs/data_sheet.md).
     definition : {"balanced", "published"}
         Definition of the viscous friction.
     transitions : bool
@@ -87,12 +86,10 @@ def propagate(
 
     Notes
     -----
-    20 000 samples of the inputs, the same in every call, on the atlas where it covers them all, else read between up to 120
-    solved ones with their derivatives, at both ends of the interval of friction and anywhere, until further ones lie within
-    5 % of its width of where they are read (``test_data_sheet.py``); ``notes`` of the result say where they do not, or
-    cannot be solved.  Transitions move to first order, and are left out where their interval leaves the
-    speeds that were searched.
-    With Persson's law ``beta`` follows the roughness unless it has an error of its own.
+    20 000 samples, the same in every call, are read off the atlas, or between up to 120 solved states with derivatives, at
+    both ends of the interval of friction and anywhere, until further ones lie within 5 % of its width of where they are read
+    (``test_data_sheet.py``); ``notes`` say where they do not.  Transitions move to first order, and are left out where their
+    interval leaves the speeds that were searched.  With Persson's law ``beta`` follows the roughness unless it has an error.
     """
     definition = check_definition(definition)
     checked_kind("contact", contact, Contact, "a LineContact or PointContact")

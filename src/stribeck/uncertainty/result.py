@@ -104,13 +104,7 @@ class Uncertainty(Exported, Told):
         return f"Probability of each regime{counted}: {self.probabilities}."
 
     def to_dict(self) -> dict[str, Any]:
-        """Return spreads, probabilities and contributions, ready for JSON.
-
-        Returns
-        -------
-        dict
-            Numbers in SI units under their names.
-        """
+        """Return spreads, probabilities and contributions in SI units, ready for JSON."""
         return {
             "errors": self.errors,
             "spreads": [each.to_dict() for each in self.spreads],

@@ -1,8 +1,6 @@
 """States of many samples of the inputs of a contact: read off the atlas, or between solved ones with their derivatives.
 
-Read are logarithms of films and viscous friction and log odds of the load share, which are nearly linear in the logarithms of
-the inputs.  Of the base model the three groups describe a state: the variables are then the combinations of the inputs that
-move them.  The numbers of a fluid or a solid in Hertz units change with the inputs, which are then the variables themselves.
+Logarithms of films and viscous friction and log odds of the load share are nearly linear in the logarithms of the inputs.
 """
 
 from __future__ import annotations
