@@ -11,9 +11,10 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.files.datasets import Column, write_columns
-from stribeck.files.results import Exported, Labelled
+from stribeck.files.results import UNWRITTEN, WRITTEN, Exported, Labelled
 from stribeck.files.writing import PathLike
 from stribeck.fits.table.rig import TEMPERATURE_TOLERANCE
+from stribeck.quantities.docstrings import told
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.results import ByValue, Card, Told
 
@@ -134,23 +135,9 @@ class BenchCurve(Exported, Told, ByValue):
         about = {"title": "Stribeck curve from raw files of a rig", "files": ", ".join(self.paths)}
         return columns, {}, about | {"notes": "\n".join(self.notes)}
 
+    @told(WRITTEN, raises=UNWRITTEN)
     def to_csv(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
-        """Write the points as a file of columns that ``stribeck fit`` reads as it is; the notes stand above it as comments.
-
-        Parameters
-        ----------
-        path : str or path-like
-            The file, ending in ``.csv``.
-        force : bool
-            Whether an existing file is replaced; otherwise it is kept and the call refused.
-        **sampling
-            Nothing.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written, or exists and ``force`` is not given.
-        """
+        """Write the points as a file of columns that ``stribeck fit`` reads as it is; the notes stand above it as comments."""
         above = [f"stribeck {version('stribeck')}, from {', '.join(self.paths)}"]
         write_columns(path, above + [line for note in self.notes for line in note.splitlines()], self._columns(), force=force)
 

@@ -6,7 +6,7 @@ import math
 import re
 from dataclasses import dataclass, field, replace
 from numbers import Real
-from typing import Any, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 
@@ -43,19 +43,12 @@ class StribeckCurve(Exported, Shown, ByValue):
     """Friction along one coordinate, off solved states or off the atlas.
 
     Its dataset has observables, friction, regimes and inputs of each point, with their errors.
-
-    Attributes
-    ----------
-    values : ndarray, shape (n,)
-        Where the points lie, ascending: the group [-], or SI units where the curve has a contact.
-    requested : int
-        Points asked for.
     """
 
     _picture = "stribeck.plot.curve.plot_curve"
 
-    values: Array
-    requested: int
+    values: Annotated[Array, "where the points lie, ascending: groups [-], or SI units of a contact"]
+    requested: Annotated[int, "points asked for"]
     _path: FrictionPath = field(repr=False)
 
     @property

@@ -132,12 +132,12 @@ class Drawn:
 
 
 # What the methods that write a dataset say of their arguments.
-_WRITTEN = {
+WRITTEN = {
     "path": "str or path-like\n    The file, or the folder of Zarr.",
     "force": "bool\n    Whether an existing one is replaced; otherwise it is kept and the call refused.",
     "**sampling": "Any\n    What ``to_dataset`` takes, as of a ball ``points`` and ``reach``.",
 }
-_UNWRITTEN = """InputError
+UNWRITTEN = """InputError
     If it cannot be written, or exists and ``force`` is not given, or a table is asked for of what is none."""
 
 
@@ -148,22 +148,22 @@ class Exported(Drawn, Tabled):
         dataset_of: Callable[..., xarray.Dataset] = self.to_dataset
         return dataset_of(**sampling)
 
-    @told(_WRITTEN, raises=_UNWRITTEN)
+    @told(WRITTEN, raises=UNWRITTEN)
     def to_netcdf(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
         """Write the dataset as NetCDF."""
         write_netcdf(self._sampled(sampling), path, force=force)
 
-    @told(_WRITTEN, raises=_UNWRITTEN)
+    @told(WRITTEN, raises=UNWRITTEN)
     def to_csv(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
         """Write the dataset as a table of values separated by commas, a row for each combination of its coordinates."""
         write_csv(self._sampled(sampling), path, force=force)
 
-    @told(_WRITTEN, raises=_UNWRITTEN)
+    @told(WRITTEN, raises=UNWRITTEN)
     def to_parquet(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
         """Write the dataset as Parquet, a row for each combination of its coordinates; needs the extra ``parquet``."""
         write_parquet(self._sampled(sampling), path, force=force)
 
-    @told(_WRITTEN, raises=_UNWRITTEN)
+    @told(WRITTEN, raises=UNWRITTEN)
     def to_zarr(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
         """Write the dataset as a folder that ``xarray.open_zarr`` opens."""
         write_zarr(self._sampled(sampling), path, force=force)

@@ -1,9 +1,4 @@
-r"""Tilt and curvature of a scan: the form of the body, found by least squares and removed from its roughness.
-
-.. math:: z = a + b \cdot x + \tfrac12 x^T K x
-
-The principal curvatures are the eigenvalues of :math:`K`; on a cylinder one of them is :math:`\pm1/R`.
-"""
+"""Tilt and curvature of a scan: the form of the body, found by least squares and removed from its roughness."""
 
 from __future__ import annotations
 
@@ -82,7 +77,11 @@ class Form(Described):
 
 
 def detrended(topography: Topography, trend: Trend = "curvature") -> tuple[Topography, Form]:
-    """Return the heights without their trend, and the trend.
+    r"""Return the heights without their trend, and the trend.
+
+    .. math:: z = a + b \cdot x + \tfrac12 x^T K x
+
+    by least squares; the principal curvatures are the eigenvalues of :math:`K`, on a cylinder one of them :math:`\pm1/R`.
 
     Parameters
     ----------

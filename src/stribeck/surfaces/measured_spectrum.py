@@ -1,17 +1,4 @@
-r"""The isotropic power spectrum of measured heights, from a map or from a line.
-
-.. math::
-
-    C(q) = \frac{(\Delta x\, \Delta y)^2}{(2\pi)^2 A \langle w^2 \rangle} \left|\sum w\, h\, e^{-i q \cdot x}\right|^2,
-    \qquad h_\mathrm{rms}^2 = \sum_k C(q_k)\, \Delta q_x \Delta q_y
-
-averaged over rings of wave vectors, no wider than a tenth of their wave number where there are enough of them.  A line
-gives the spectrum along it,
-
-.. math:: C_1(q) = \int_{-\infty}^{\infty} C\left((q^2 + k^2)^{1/2}\right) \mathrm{d}k
-
-Source: [Persson05]; [Jacobs17] on windows and reliability.
-"""
+"""The isotropic power spectrum of measured heights, from a map or from a line."""
 
 from __future__ import annotations
 
@@ -71,14 +58,21 @@ def power_spectrum(
     *,
     resolution: float | None = None,
 ) -> MeasuredSpectrum:
-    """Return the isotropic power spectrum of a scan.
+    r"""Return the isotropic power spectrum of a scan, averaged over rings of wave vectors.
+
+    .. math::
+
+        C(q) = \frac{(\Delta x\, \Delta y)^2}{(2\pi)^2 A \langle w^2 \rangle} \left|\sum w\, h\, e^{-i q \cdot x}\right|^2,
+        \qquad h_\mathrm{rms}^2 = \sum_k C(q_k)\, \Delta q_x \Delta q_y
+
+    of a map; a line gives :math:`C_1(q) = \int_{-\infty}^{\infty} C\left((q^2 + k^2)^{1/2}\right) \mathrm{d}k`.
 
     Parameters
     ----------
     topography : Topography
         Heights without trend and without missing points.
     window : {"hann", "none"}
-        Weight of the heights; ``"none"`` is for periodic ones.
+        Weight w of the heights; ``"none"`` is for periodic ones.
     resolution : float, optional
         Shortest wavelength that the instrument resolves [m]; that of the topography by default.
 
@@ -96,6 +90,8 @@ def power_spectrum(
     -----
     Reliable are wavelengths of at most 1/2.5 of the scan's shorter side, and at least 4 points and the resolution.
     The sum of all modes is the mean square of the windowed heights to rounding (``test_surfaces.py``).
+
+    Source: [Persson05]; [Jacobs17] on windows and reliability.
     """
     checked_kind("topography", topography, Topography, "a Topography, as of read_topography(path)")
     if resolution is not None:

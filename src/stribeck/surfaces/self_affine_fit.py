@@ -1,12 +1,4 @@
-r"""Fit of a self-affine spectrum to a measured one, with its uncertainty.
-
-.. math:: D = 2 \sum_b n_b \left[\frac{P_b}{M_b} - 1 - \ln\frac{P_b}{M_b}\right]
-
-is the deviance of the spectrum M from rings P of the periodogram, each a mean of n exponentially distributed numbers.
-Roll-off, sharp cut-offs and white noise are kept where they lower ``D + k ln(sum n)``, for k parameters.
-
-Source: [Whittle53]; [Schwarz78] for the penalty.
-"""
+"""Fit of a self-affine spectrum to a measured one, with its uncertainty."""
 
 from __future__ import annotations
 
@@ -37,7 +29,12 @@ MAX_DEVIANCE_RATIO = 2.0  # Deviance over its expectation from which the spectru
 
 
 def fit_self_affine(measured: MeasuredSpectrum) -> SelfAffineFit:
-    """Fit a self-affine spectrum to the reliable part of a measured one.
+    r"""Fit a self-affine spectrum to the reliable part of a measured one, by least deviance.
+
+    .. math:: D = 2 \sum_b n_b \left[\frac{P_b}{M_b} - 1 - \ln\frac{P_b}{M_b}\right]
+
+    of the spectrum M from rings P of the periodogram, each a mean of n exponentially distributed numbers.  Roll-off, sharp
+    cut-offs and white noise are kept where they lower ``D + k ln(sum n)``, for k parameters.
 
     Parameters
     ----------
@@ -57,8 +54,9 @@ def fit_self_affine(measured: MeasuredSpectrum) -> SelfAffineFit:
     Notes
     -----
     Standard errors come from the Fisher information of the rings, larger by the root of the deviance where that is above
-    one; how often they cover is in docs/surfaces.md, from ``benchmarks/surface_errors.py``.  Sharp cut-offs, looked for in
-    maps only, are found to the width of a ring.
+    one; how often they cover is in docs/surfaces.md.  Sharp cut-offs, sought in maps only, are found to the width of a ring.
+
+    Source: [Whittle53]; [Schwarz78] for the penalty.
     """
     rings = checked_kind(
         "measured", measured, MeasuredSpectrum, "a MeasuredSpectrum, as of power_spectrum(topography)"
