@@ -2,18 +2,21 @@
 
 Usage::
 
-    python benchmarks/mutants.py [--number 40] [--seed 1] [--only 3,7] [--list]
+    python benchmarks/mutants.py [--number 40] [--seed 1] [--only 3,7] [--jobs 2] [--list]
 
 A fixed seed draws faults evenly over the lines of ``src`` that hold code: a comparison turned round, an arithmetic sign or a
-number changed, a condition negated, what a function returns left out.  For each the script copies the checkout, applies the
-fault and runs the tests until one fails: first the modules that name the file's subject, then `make test`.  It prints a row a
-fault: the file, the fault, the test that caught it, and what was run.  Only what `make test` lets pass counts as survived.
+number changed, a condition negated, what a function returns left out.  First `make test` runs whole and keeps in
+``build/mutants.json`` which tests run which line, and how long each takes; needs pytest-cov.  For each fault the script
+copies the checkout, applies the fault, and runs the tests of that line, the fastest first, until one fails.  Where none does
+it runs `make test`.  It prints a row a fault: the file, the fault, the test that caught it, and what was run.  Only what
+`make test` lets pass counts as survived.
 """
 
 from __future__ import annotations
 
 import argparse
 import ast
+import json
 import os
 import random
 import re
@@ -22,8 +25,10 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
+from xml.etree import ElementTree
 
 ROOT = Path(__file__).parents[1]
 SWAPS: dict[type, type] = {
@@ -62,7 +67,9 @@ SIGNS = {
     ast.And: "and",
     ast.Or: "or",
 }
-PYTEST = ["-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-n", "auto"]
+FINITE = ["-o", "faulthandler_timeout=240", "-o", "faulthandler_exit_on_timeout=true"]
+PYTEST = ["-m", "pytest", "-q", "-p", "no:cacheprovider", *FINITE]
+KEPT = ROOT / "build" / "mutants.json"  # Which tests run which lines
 
 
 class Fault(NamedTuple):
@@ -146,30 +153,59 @@ def drawn(number: int, seed: int) -> list[Fault]:
     return [rng.choice(each) for each in rng.sample(places, number)]
 
 
-def tests_of(fault: Fault) -> list[str]:
-    """Return the test modules that name the file's subject or what it defines."""
-    defined = re.findall(r"^(?:def|class) (\w+)", fault.path.read_text(encoding="utf-8"), re.M)
-    names = {fault.path.stem, *defined} - {"__init__"}
-    near = re.compile(r"\b(" + "|".join(map(re.escape, sorted(names))) + r")\b")
-    modules = sorted((ROOT / "tests").glob("test_*.py"))
-    return [str(each.relative_to(ROOT)) for each in modules if near.search(each.read_text(encoding="utf-8"))]
+def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Return how pytest ended in a checkout."""
+    threads = {name: "1" for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")}
+    environment = {**os.environ, **threads, "PYTHONPATH": os.pathsep.join(map(str, (folder / "src", folder)))}
+    return subprocess.run([sys.executable, *PYTEST, *arguments], cwd=folder, env=environment, capture_output=True, text=True)
 
 
-def caught_by(fault: Fault, python: str) -> tuple[str, str]:
-    """Return the test that fails with a fault, empty if none does, and what was run."""
+def measured() -> dict[str, Any]:
+    """Return the tests, the fastest first, and the numbers of those that run each line of each file, from one run of all."""
+    if KEPT.exists():
+        return dict(json.loads(KEPT.read_text(encoding="utf-8")))
+    from coverage import CoverageData
+
     with tempfile.TemporaryDirectory() as scratch:
-        copy = Path(scratch) / "checkout"
-        shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(".git", ".venv", "build", "__pycache__", ".*_cache"))
+        data, times, settings = (Path(scratch) / name for name in ("data", "times.xml", "settings"))
+        settings.write_text(f"[run]\ndata_file = {data}\n", encoding="utf-8")
+        cover = ["--cov=stribeck", f"--cov-config={settings}", "--cov-context=test", "--cov-report="]
+        done = run(ROOT, *cover, "-n", "auto", f"--junitxml={times}", "tests")
+        if done.returncode:
+            sys.exit(f"Faults need tests that pass without one:\n{done.stdout[-2000:]}")
+        seconds: dict[str, float] = {}
+        for case in ElementTree.parse(times).iter("testcase"):
+            seconds[f"{str(case.get('classname')).replace('.', '/')}.py::{case.get('name')}"] = float(case.get("time") or 0.0)
+        covered = CoverageData(str(data))
+        covered.read()
+        contexts = {context.rpartition("|")[0] for context in covered.measured_contexts()} - {""}
+        tests = sorted(contexts, key=lambda test: (seconds.get(test, 0.0), test))
+        number = {test: i for i, test in enumerate(tests)}
+        lines: dict[str, dict[str, list[int]]] = {}
+        for name in covered.measured_files():
+            lines[str(Path(name).relative_to(ROOT))] = {
+                str(line): sorted({number[test] for test in (each.rpartition("|")[0] for each in at) if test})
+                for line, at in covered.contexts_by_lineno(name).items()
+            }
+    found = {"tests": tests, "lines": lines}
+    KEPT.parent.mkdir(exist_ok=True)
+    KEPT.write_text(json.dumps(found), encoding="utf-8")
+    return found
+
+
+def caught_by(fault: Fault, tests: list[str]) -> tuple[str, str]:
+    """Return the test that fails with a fault, empty if none does, and what was run; ``tests`` are those of its line."""
+    with tempfile.TemporaryDirectory() as scratch:
+        copy, listed = Path(scratch) / "checkout", Path(scratch) / "tests"
+        shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(".git", ".venv*", "build", "__pycache__", ".*_cache"))
         (copy / fault.path.relative_to(ROOT)).write_text(fault.applied(), encoding="utf-8")
-        threads = {name: "1" for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")}
-        environment = {**os.environ, **threads, "PYTHONPATH": os.pathsep.join(map(str, (copy / "src", copy)))}
-        for run, tests in (("near tests", tests_of(fault)), ("make test", ["tests"])):
-            if not tests:
-                continue
-            done = subprocess.run([python, *PYTEST, *tests], cwd=copy, env=environment, capture_output=True, text=True)
-            if done.returncode not in (0, 5):
-                failed = re.search(r"^(?:FAILED|ERROR|SUBFAILED\S*) (\S+)", done.stdout, re.M)
-                return failed[1] if failed else "the collection", run
+        listed.write_text("\n".join(tests), encoding="utf-8")
+        for where, arguments in (("tests of the line", [f"@{listed}"]), ("make test", ["-n", "auto", "tests"])):
+            if where == "make test" or tests:
+                done = run(copy, "-x", *arguments)
+                if done.returncode not in (0, 5):
+                    failed = re.search(r"^(?:FAILED|ERROR|SUBFAILED\S*) (\S+)", done.stdout, re.M)
+                    return failed[1] if failed else "the collection", where
     return "", "make test"
 
 
@@ -179,18 +215,27 @@ def main() -> None:
     parser.add_argument("--number", type=int, default=40)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", default="", help="numbers of faults, by commas")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="faults tried at a time")
     parser.add_argument("--list", action="store_true", help="print the faults and run nothing")
     given = parser.parse_args()
     only = {int(each) for each in given.only.split(",") if each}
-    caught = run = 0
-    print("| fault | | caught by | in |\n|---|---|---|---|")
-    for i, fault in enumerate(drawn(given.number, given.seed)):
-        if only and i not in only:
-            continue
-        test, where = ("", "not run") if given.list else caught_by(fault, sys.executable)
-        run, caught = run + 1, caught + bool(test)
-        print(f"| {i} | {fault} | {test or ('-' if given.list else '**survived**')} | {where} |", flush=True)
-    print(f"\n{caught} of {run} caught" if not given.list else "")
+    faults = [(i, fault) for i, fault in enumerate(drawn(given.number, given.seed)) if not only or i in only]
+    print("| fault | | caught by | in |\n|---|---|---|---|", flush=True)
+    if given.list:
+        for i, fault in faults:
+            print(f"| {i} | {fault} | - | not run |")
+        return
+    known = measured()
+
+    def tried(numbered: tuple[int, Fault]) -> bool:
+        i, fault = numbered
+        at = known["lines"].get(str(fault.path.relative_to(ROOT)), {}).get(str(fault.line), [])
+        test, where = caught_by(fault, [known["tests"][k] for k in at])
+        print(f"| {i} | {fault} | {test or '**survived**'} | {where} |", flush=True)
+        return bool(test)
+
+    with ThreadPoolExecutor(given.jobs) as pool:
+        print(f"\n{sum(pool.map(tried, faults))} of {len(faults)} caught")
 
 
 if __name__ == "__main__":
