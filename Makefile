@@ -11,7 +11,8 @@ DOCS   := $(VENV)/.ready-docs
 FINITE := -o faulthandler_timeout=240 -o faulthandler_exit_on_timeout=true
 
 # Those with a mark of pytest, `quick`, so that no module without one is imported.
-QUICK  := -m pytest -q -n auto $(FINITE) -m "quick and not slow" $(shell grep -l 'mark\.quick' tests/test_*.py)
+WORKERS := -n auto
+QUICK  := -m pytest -q $(WORKERS) $(FINITE) -m "quick and not slow" $(shell grep -l 'mark\.quick' tests/test_*.py)
 UV     := $(or $(shell command -v uv),$(BIN)/uv)
 
 # Where bytecode is not kept, each worker and each command compiles all modules anew.
