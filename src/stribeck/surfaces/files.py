@@ -7,7 +7,6 @@ import math
 import os
 import warnings
 import zipfile
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +15,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.files.writing import MissingExtraError, path_of
 from stribeck.quantities.units import InputError, show, to_si
-from stribeck.surfaces.text import MAX_FILE_BYTES, TEXT_ENDINGS, read_text, spacing_of
+from stribeck.surfaces.text import MAX_FILE_BYTES, TEXT_ENDINGS, Spacing, read_text, spacing_of
 from stribeck.surfaces.topography import Topography
 
 __all__ = ["read_topography"]
@@ -34,7 +33,7 @@ def read_topography(
     *,
     unit: str | None = None,
     height_unit: str | None = None,
-    spacing: str | float | Sequence[str | float] | None = None,
+    spacing: Spacing = None,
     channel: str | None = None,
 ) -> Topography:
     """Read the heights of a measured surface.
@@ -201,12 +200,7 @@ def _channel(path: Path, reader: Any, name: str | None) -> Any:
 
 
 def _from_channel(
-    path: Path,
-    reader: Any,
-    channel: Any,
-    unit: str | None,
-    height_unit: str | None,
-    spacing: str | float | Sequence[str | float] | None,
+    path: Path, reader: Any, channel: Any, unit: str | None, height_unit: str | None, spacing: Spacing
 ) -> Topography:
     format_name = reader.format()
     shape, declared, sizes = tuple(channel.nb_grid_pts), channel.unit, channel.physical_sizes

@@ -23,7 +23,10 @@ from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.text_header import Header, header_of, unit_of
 from stribeck.surfaces.topography import MIN_POINTS, Topography
 
-__all__ = ["TEXT_ENDINGS", "read_text", "spacing_of"]
+__all__ = ["TEXT_ENDINGS", "Spacing", "read_text", "spacing_of"]
+
+Spacing = str | float | Sequence[str | float] | None
+"""The distance between points as it is given: one for all axes, or one each."""
 
 TEXT_ENDINGS = (".csv", ".tsv", ".txt", ".dat", ".xyz")  # Endings of plain text files
 
@@ -70,13 +73,7 @@ class _Table:
     notes: tuple[str, ...]
 
 
-def read_text(
-    path: Path,
-    *,
-    unit: str | None = None,
-    height_unit: str | None = None,
-    spacing: str | float | Sequence[str | float] | None = None,
-) -> Topography:
+def read_text(path: Path, *, unit: str | None, height_unit: str | None, spacing: Spacing) -> Topography:
     """Read heights from a text file."""
     table = _table(path)
     columns = table.values.shape[1]
@@ -113,9 +110,7 @@ def read_text(
     return _map(path, places, z, table, rounding)
 
 
-def _without_positions(
-    path: Path, table: _Table, spacing: str | float | Sequence[str | float] | None, z_factor: float, unit: str | None
-) -> Topography:
+def _without_positions(path: Path, table: _Table, spacing: Spacing, z_factor: float, unit: str | None) -> Topography:
     """Return heights whose distance is given, declared above them, or along their edges."""
     values, notes = table.values, list(table.notes)
     found: tuple[tuple[float, str] | None, ...] = (None, None)
@@ -148,7 +143,7 @@ def _without_positions(
     return Topography(z * z_factor, tuple(steps), source=path.name, notes=tuple(notes))
 
 
-def spacing_of(spacing: str | float | Sequence[str | float] | None, axes: int) -> list[float] | None:
+def spacing_of(spacing: Spacing, axes: int) -> list[float] | None:
     """Return the distance between points that was given for each axis [m]."""
     if spacing is None:
         return None

@@ -227,33 +227,17 @@ def _filled(heights: Array, holes: Flags) -> Array:
     if not holes.any():
         return heights
     from scipy import sparse
+    from scipy.sparse.csgraph import laplacian
     from scipy.sparse.linalg import spsolve
 
-    number = np.full(heights.shape, -1)
-    number[holes] = np.arange(holes.sum())
-    rows, columns, entries = [], [], []
-    known = np.zeros(int(holes.sum()))
-    degree = np.zeros(known.size)
-    for axis in range(heights.ndim):
-        for step in (-1, 1):
-            neighbour = np.roll(number, step, axis)
-            value = np.roll(heights, step, axis)
-            inside = np.ones(heights.shape, dtype=bool)
-            edge = [slice(None)] * heights.ndim
-            edge[axis] = slice(0, 1) if step == 1 else slice(-1, None)
-            inside[tuple(edge)] = False
-            here = holes & inside
-            to_hole, to_known = here & (neighbour >= 0), here & (neighbour < 0)
-            np.add.at(degree, number[here], 1.0)
-            np.add.at(known, number[to_known], value[to_known])
-            rows.append(number[to_hole])
-            columns.append(neighbour[to_hole])
-            entries.append(np.full(int(to_hole.sum()), -1.0))
-    size = known.size
-    rows.append(np.arange(size))
-    columns.append(np.arange(size))
-    entries.append(degree)
-    matrix = sparse.csc_matrix((np.concatenate(entries), (np.concatenate(rows), np.concatenate(columns))), shape=(size, size))
+    hole, places = holes.ravel(), np.arange(heights.size).reshape(heights.shape)
+    pairs = [(places.take(range(n - 1), axis), places.take(range(1, n), axis)) for axis, n in enumerate(heights.shape)]
+    one, other = (np.concatenate([pair[side].ravel() for pair in pairs]) for side in (0, 1))
+    touching = hole[one] | hole[other]
+    links = (one[touching], other[touching])
+    graph = sparse.coo_matrix((np.ones(links[0].size), links), shape=(hole.size, hole.size))
+    balance: Any = laplacian(graph + graph.T)
+    balance = balance.tocsc()[hole]
     filled = heights.copy()
-    filled[holes] = spsolve(matrix, known)
+    filled[holes] = spsolve(balance[:, hole], -balance[:, ~hole] @ heights[~holes])
     return filled
