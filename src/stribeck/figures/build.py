@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Literal
 from stribeck.figures import style
 from stribeck.figures.paper_figure import PaperFigure, figure_names, load_figure
 from stribeck.files.datasets import NETCDF_ENDINGS, write_netcdf
-from stribeck.files.writing import MissingExtraError, PathLike, atomic_write, check_writable
+from stribeck.files.writing import PathLike, atomic_write, check_writable, need_extra
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve_error import SolveError
 
@@ -25,6 +25,12 @@ if TYPE_CHECKING:
     import xarray
 
 PICTURE_ENDINGS = (".png", ".svg")
+
+EXTRAS = (
+    ("a figure", "plot", "matplotlib"),
+    ("the data of a figure", "data", "xarray"),
+    ("the data of a figure", "data", "netCDF4"),
+)
 
 # Beginnings of the names of sources that change no number of a figure.
 SOURCES_WITHOUT_NUMBERS = (
@@ -61,7 +67,8 @@ def make_figures(
 ) -> list[Made]:
     """Make figures of the paper: for each a PNG, an SVG and the data as NetCDF, such as ``figure_3.png``."""
     figures = [load_figure(name) for name in figure_names(names)]
-    _need_extras()
+    for purpose, extra, library in EXTRAS:
+        need_extra(purpose, extra, library)
     place = _folder(folder)
     for figure in figures:
         _check_files(figure, place, force)
@@ -122,18 +129,6 @@ def _read(figure: PaperFigure, file: Path) -> xarray.Dataset | None:
     except (OSError, ValueError):
         return None
     return data if data.attrs.get("figure") == figure.name and "fingerprint" in data.attrs else None
-
-
-def _need_extras() -> None:
-    for purpose, extra, library in (
-        ("a figure", "plot", "matplotlib"),
-        ("the data of a figure", "data", "xarray"),
-        ("the data of a figure", "data", "netCDF4"),
-    ):
-        try:
-            __import__(library)
-        except ImportError:
-            raise MissingExtraError(purpose, extra, library) from None
 
 
 def _folder(folder: PathLike) -> Path:

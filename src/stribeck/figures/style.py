@@ -20,34 +20,8 @@ if TYPE_CHECKING:
 else:  # Annotations that the modules of the figures import
     DataArray = Dataset = Any
 
-__all__ = [
-    "Axes",
-    "CONTACT",
-    "CYAN",
-    "DASHED",
-    "DOTTED",
-    "DataArray",
-    "Dataset",
-    "Figure",
-    "FLUID",
-    "GREEN",
-    "GREY",
-    "INK",
-    "MARK",
-    "TINTS",
-    "inset",
-    "limit",
-    "lines",
-    "new_figure",
-    "panel",
-    "panels",
-    "power",
-    "save",
-    "sequence",
-    "slope",
-    "small_legend",
-    "steps",
-]
+# Names of other modules that the modules of the figures take from here.
+__all__ = ["CONTACT", "FLUID", "GREY", "INK", "MARK", "TINTS", "Axes", "DataArray", "Dataset", "Figure"]
 
 CYAN = "#56b4e9"
 GREEN = "#009e73"  # The fourth of the strong colours of Okabe and Ito, beside CONTACT, FLUID and MARK.
@@ -118,22 +92,24 @@ def inset(axes: Axes, bounds: tuple[float, float, float, float], title: str) -> 
     return found
 
 
-def steps(axes: Axes, x: DataArray, rows: DataArray, values: DataArray, lw: float = 1.4) -> None:
-    """Draw a line for each step of a parameter over the whole of x, dark to light, labelled by its value."""
+def steps(axes: Axes, rows: DataArray, lw: float = 1.4, by: DataArray | None = None) -> None:
+    """Draw a line for each step of the first dimension over the second, dark to light, labelled by its value."""
+    x = rows[rows.dims[1]]
+    values = rows[rows.dims[0]] if by is None else by
     for colour, row, value in zip(sequence(len(values)), rows.values, values.values, strict=True):
         axes.plot(x, row, color=colour, lw=lw, label=power(value))
     axes.set_xlim(float(x[0]), float(x[-1]))
 
 
-def limit(axes: Axes, x: Any, y: Any, label: str, **look: Any) -> None:
-    """Draw what a formula gives in a limit."""
-    axes.plot(x, y, **{"color": INK, "lw": 1.2, "ls": DASHED, "label": label} | look)
+def limit(axes: Axes, values: DataArray, label: str, **look: Any) -> None:
+    """Draw what a formula gives in a limit, over its coordinate."""
+    axes.plot(values[values.dims[0]], values, **{"color": INK, "lw": 1.2, "ls": DASHED, "label": label} | look)
 
 
-def lines(axes: Axes, x: Any, data: Dataset, table: dict[str, tuple[str, str, Any]], **look: Any) -> None:
-    """Draw variables of a dataset, each with its label, colour and dashes."""
+def lines(axes: Axes, data: Dataset, table: dict[str, tuple[str, str, Any]], **look: Any) -> None:
+    """Draw variables of a dataset over their coordinate, each with its label, colour and dashes."""
     for name, (label, colour, dashes) in table.items():
-        axes.plot(x, data[name], **{"color": colour, "ls": dashes, "lw": 1.5, "label": label} | look)
+        limit(axes, data[name], **{"color": colour, "ls": dashes, "lw": 1.5, "label": label} | look)
 
 
 def sequence(count: int) -> list[str]:

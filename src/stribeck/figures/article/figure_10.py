@@ -131,11 +131,11 @@ def draw(figure: Figure, data: Dataset) -> None:
     x, y = r"$\mu_{f,\mathrm{th}}$", r"friction coefficient $\mu$"
     style.panel(a, "a", r"dotted: $\mu_0(1 - F_f/F_N)$", legend, xlabel=x, ylabel=y, ylim=(0, 1.35), xlim=(3e-5, 2))
     _draw_shares(shares, data)
-    style.lines(b, data.phi_load, data, PHI_LAWS, lw=1.6)
+    style.lines(b, data, PHI_LAWS, lw=1.6)
     legend = {"loc": "center left", "bbox_to_anchor": (0.0, 0.62)}
     logarithmic = {"xscale": "log", "yscale": "log", "xlabel": r"load $\bar F_N$", "ylabel": r"$\phi$", "ylim": (1e-9, 1e9)}
     style.panel(b, "b", r"auxiliary function $\phi$, $L = -\ln \bar F_N$", legend, **logarithmic)
-    style.lines(ratios, data.phi_load, data / data.phi, PHI_LAWS, lw=1.6)
+    style.lines(ratios, data / data.phi, PHI_LAWS, lw=1.6)
     ratios.axvspan(*FIT_LOAD_RANGE, color="#f4f4f2", lw=0, zorder=0)
     ratios.text(1e-3, 0.15, "range of the fit", size=8, color=style.GREY, ha="center")
     legend = {"loc": "upper left", "handles": ratios.lines[1:]}
@@ -154,7 +154,7 @@ def _draw_shares(axes: Axes, data: Dataset) -> None:
         axes.loglog(
             data.speed[every], data[name].where(data[name] > 0)[every], marker, color=style.INK, mfc=face, ms=4, label=label
         )
-    style.lines(axes, data.speed, data, SHARE_LAWS)
+    style.lines(axes, data, SHARE_LAWS)
     load, roughness = (style.power(float(data[name][case])) for name in ("load", "roughness"))
     text = rf"printed and corrected, $\bar F_N$ = {load}, $\bar h_\mathrm{{rms}}$ = {roughness}"
     settings = {"xlabel": r"speed $\lambda$", "ylabel": "share of load or friction", "xlim": (1e-9, 1e-3), "ylim": (1e-8, 1e2)}

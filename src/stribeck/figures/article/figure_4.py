@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from stribeck._types import Array
 from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.smooth import film_layers
 from stribeck.figures import style
 from stribeck.figures.job import FigureJob
-from stribeck.figures.style import Axes, Dataset, Figure
+from stribeck.figures.style import Axes, DataArray, Dataset, Figure
 from stribeck.solids import hertz
 
 TITLE = "Gaps in the smooth limit"
@@ -75,14 +74,13 @@ def compute(work: FigureJob) -> Dataset:
 def draw(figure: Figure, data: Dataset) -> None:
     """Draw the gaps, their collapse, and how far they are from it."""
     a, c, e, b, d, f = style.panels(figure, 2, 3, width_ratios=[1.1, 1, 0.9])
-    slow, fast = data.slow_speed, data.fast_speed
-    style.steps(a, data.x_slow, data.slow_gap, slow)
-    style.steps(c, data.xi, data.outlet_gap, slow)
-    style.steps(b, data.x_fast, data.fast_gap, fast)
-    style.steps(d, data.ratio, data.rigid_gap, fast)
-    style.limit(a, data.x_slow, data.hertz_gap, "Hertz")
-    style.limit(c, data.xi, data.outlet_limit, "similarity solution")
-    style.limit(d, data.ratio, data.parabola, r"$1 + x^2/2Rh_0$")
+    style.steps(a, data.slow_gap)
+    style.steps(c, data.outlet_gap)
+    style.steps(b, data.fast_gap)
+    style.steps(d, data.rigid_gap)
+    style.limit(a, data.hertz_gap, "Hertz")
+    style.limit(c, data.outlet_limit, "similarity solution")
+    style.limit(d, data.parabola, r"$1 + x^2/2Rh_0$")
     shown = {"title": r"speed $\lambda$", "ncols": 2}
     gap = r"$h/u_\mathrm{Hz}$"
     style.panel(
@@ -95,17 +93,17 @@ def draw(figure: Figure, data: Dataset) -> None:
     style.panel(b, "b", r"fast, $\lambda \gg 1$", of_fast, xlabel="$x/a$", ylabel=gap, yscale="log", ylim=(0.03, 2e3))
     x, of_rigid = r"$x/\sqrt{R h_0}$", shown | {"loc": "upper center"}
     style.panel(d, "d", "over the film of the rigid cylinder", of_rigid, xlabel=x, ylabel=r"$h/h_0$", ylim=(0, 9))
-    _draw_distance(e, slow.values, data.outlet_distance.values, 0.4, "2/5")
+    _draw_distance(e, data.outlet_distance, 0.4, "2/5")
     style.panel(e, "+", "distance of (c) from the limit")
-    _draw_distance(f, fast.values, data.rigid_distance.values, -1 / 3, "−1/3")
+    _draw_distance(f, data.rigid_distance, -1 / 3, "−1/3")
     style.panel(f, "+", "distance of (d) from the parabola")
     inset = style.inset(a, (0.3, 0.12, 0.42, 0.4), "outlet")
-    inside = data.sel(x_slow=data.x_slow[(data.x_slow > 0.6) & (data.x_slow < 1.2)])
-    style.steps(inset, inside.x_slow, inside.slow_gap, slow, lw=1.0)
+    style.steps(inset, data.slow_gap[:, (data.x_slow.values > 0.6) & (data.x_slow.values < 1.2)], lw=1.0)
     inset.set(yscale="log", xlim=(0.6, 1.2))
 
 
-def _draw_distance(axes: Axes, speeds: Array, distance: Array, exponent: float, text: str) -> None:
+def _draw_distance(axes: Axes, distances: DataArray, exponent: float, text: str) -> None:
+    speeds, distance = distances[distances.dims[0]].values, distances.values
     axes.loglog(speeds, distance, color=style.GREY, lw=0.8)
     for colour, speed, value in zip(style.sequence(len(speeds)), speeds, distance, strict=True):
         axes.plot(speed, value, "o", color=colour, ms=6)

@@ -90,7 +90,7 @@ def draw(figure: Figure, data: Dataset) -> None:
 def _draw_laws(axes: Axes, below: Axes, data: Dataset, solved: str, laws: dict[str, tuple[str, str, Any]]) -> None:
     every, ends = slice(None, None, 5), (float(data.speed[0]), float(data.speed[-1]))
     axes.loglog(data.speed[every], data[solved][every], "o", color=style.INK, ms=4, mfc="white", label="solved", zorder=4)
-    style.lines(axes, data.speed, data, laws)
+    style.lines(axes, data, laws)
     axes.tick_params(labelbottom=False)
     axes.set_xlim(*ends)
     below.axhline(0.0, color=style.GREY, lw=0.8)

@@ -100,14 +100,13 @@ def compute(work: FigureJob) -> Dataset:
 def draw(figure: Figure, data: Dataset) -> None:
     """Draw the gaps, their collapse, how far they are from it, and the scale of the caption."""
     a, c, e, b, d, f = style.panels(figure, 2, 3, width_ratios=[1.1, 1, 0.95])
-    large, small = data.kappa_small, data.kappa_large
-    style.steps(a, data.x, data.large_gap, large)
-    style.steps(c, data.xi, data.edge_gap, large)
-    style.steps(b, data.x_rough, data.small_gap, small)
-    style.steps(d, data.ratio, data.rigid_gap, small)
-    style.limit(a, data.x, data.hertz_gap, "Hertz")
-    style.limit(c, data.xi, data.edge_limit, "similarity solution")
-    style.limit(d, data.ratio, data.parabola, r"$1 + x^2/2R\tilde h_0$")
+    style.steps(a, data.large_gap)
+    style.steps(c, data.edge_gap)
+    style.steps(b, data.small_gap)
+    style.steps(d, data.rigid_gap)
+    style.limit(a, data.hertz_gap, "Hertz")
+    style.limit(c, data.edge_limit, "similarity solution")
+    style.limit(d, data.parabola, r"$1 + x^2/2R\tilde h_0$")
     shown, gap = {"title": r"$\kappa$", "ncols": 2}, r"$h/u_\mathrm{Hz}$"
     centred = shown | {"loc": "upper center"}
     style.panel(a, "a", r"large indentation, $\kappa \ll 1$", centred, xlabel="$x/a$", ylabel=gap, ylim=(-0.02, 0.9))
@@ -125,13 +124,13 @@ def draw(figure: Figure, data: Dataset) -> None:
         (style.INK, style.CONTACT, style.FLUID), data["load"].values, data.printed_gap.values, strict=True
     ):
         f.plot(data.ratio, of_load, color=colour, lw=1.4, label=style.power(load))
-    style.limit(f, data.ratio, data.parabola, "$1 + X^2/2$")
+    style.limit(f, data.parabola, "$1 + X^2/2$")
     as_printed = over_film | {"xlabel": r"$X = x/\sqrt{a \tilde h_0}$, as printed", "xlim": (-4, 4)}
     text = rf"the caption's scale, $\kappa$ = {float(data.kappa_large[-1]):g}"
     style.panel(f, "+", text, centred | {"title": r"load $\bar F_N$"}, **as_printed)
     inset = style.inset(a, (0.3, 0.13, 0.4, 0.4), r"$\alpha h/h_\mathrm{rms}$")  # the contact in units of the roughness
-    style.steps(inset, data.inside, data.core_gap, large, lw=1.0)
-    style.limit(inset, data.inside, data.rough_contact, "rough contact", color=style.CYAN, lw=1.6)
+    style.steps(inset, data.core_gap, lw=1.0)
+    style.limit(inset, data.rough_contact, "rough contact", color=style.CYAN, lw=1.6)
     inset.set(ylim=(0.8, 4.2), xlim=(-1, 1))
     style.small_legend(inset, handles=inset.lines[-1:], loc="upper center", fontsize=7)
 

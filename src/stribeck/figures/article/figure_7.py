@@ -120,7 +120,7 @@ def draw(figure: Figure, data: Dataset) -> None:
     style.slope(a, 3e-5, 5e-3, 0.4, "2/5")
     style.slope(a, 0.3, 2.2, 2 / 3, "2/3")
     line = np.array([1e-3, 200])
-    style.limit(b, line, line, "$y = x$", lw=1.1)
+    b.plot(line, line, color=style.INK, lw=1.1, ls=style.DASHED, label="$y = x$")
     _draw_curves(b, data, "hydrodynamic_friction", "minimum_law", labels=False)
     over_smooth = {"xlabel": r"$\mu_{f,\mathrm{th}}$", "ylabel": friction, "xlim": (3e-5, 150), "ylim": (3e-3, 150)}
     style.panel(b, "b", "over the friction of smooth surfaces", {"loc": "upper left"}, **over_smooth)

@@ -98,13 +98,13 @@ def draw(figure: Figure, data: Dataset) -> None:
     a, b, c, d = style.panels(figure, 2, 2)
     _draw_curve(a, data)
     for axes, name in ((b, "gap"), (c, "fluid_pressure"), (d, "contact_pressure")):
-        style.steps(axes, data.x, data[name], data.speed, lw=1.5)
+        style.steps(axes, data[name], lw=1.5)
         axes.set_xlabel("$x/a$")
-    style.limit(b, data.inside, data.rough_contact, "rough contact", color=style.CYAN, lw=1.8)
+    style.limit(b, data.rough_contact, "rough contact", color=style.CYAN, lw=1.8)
     legend = {"loc": "upper center", "title": r"speed $\lambda$", "ncols": 2}
     style.panel(b, "b", "gap", legend, yscale="log", ylabel=r"$h/u_\mathrm{Hz}$", ylim=(8e-4, 0.8))
     for axes, which, text, kind in ((c, "c", "fluid pressure", "f"), (d, "d", "contact pressure", "c")):
-        style.limit(axes, data.x, data.hertz_pressure, "Hertz")
+        style.limit(axes, data.hertz_pressure, "Hertz")
         axes.axhline(0.0, color=style.GREY, lw=0.6)
         legend = {"loc": "upper left", "handles": axes.lines[-2:-1]}
         style.panel(axes, which, text, legend, ylabel=rf"$p_{kind}/p_\mathrm{{Hz}}$", ylim=(-0.24, 1.1))

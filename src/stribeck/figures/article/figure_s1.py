@@ -118,9 +118,9 @@ def draw(figure: Figure, data: Dataset) -> None:
     """Draw each part of the expansion, and how far it is from the solver."""
     *fields, d = style.panels(figure, 2, 2)
     for axes, which, text, (name, (_, label, power)) in zip(fields, "abc", PANEL_LABELS, PANEL_PARTS.items(), strict=True):
-        style.steps(axes, data.x, data[name] / 10**power, data.speed[0], lw=1.3)
+        style.steps(axes, data[name] / 10**power, lw=1.3, by=data.speed[0])
         law = data[f"{name}_law"] / 10**power
-        style.limit(axes, data.x, law, "formula", lw=1.6)
+        style.limit(axes, law, "formula", lw=1.6)
         low, high = float(law.min()), float(law.max())
         ends = low - 0.25 * (high - low), high + 0.2 * (high - low)
         legend = {"loc": "upper left", "title": r"speed $\lambda$", "fontsize": 7.5} if which == "c" else None
