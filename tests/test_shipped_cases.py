@@ -31,8 +31,11 @@ def first_line(capsys, path):
     return call(capsys, "check", str(path)).out.split("\n")[0].rstrip()
 
 
-DEAR = ("contact_lens", "nitrile_seal", "pdms_ball", "rubber_ball", "tongue_model", "worn_rod_seal")
-"""Balls, and two seals, whose two curves take seconds, and that of the worn one a minute: others have its shape or its law."""
+DEAR = (
+    *("contact_lens", "nitrile_seal", "pdms_ball", "pdms_fit", "rod_seal", "rubber_ball", "tongue_model"),
+    *("wiper_blade", "worn_rod_seal"),
+)
+"""Balls, and contacts whose curves take seconds and whose shape, law or film another one has."""
 
 CHECKED = [pytest.param(path, marks=[pytest.mark.slow] if path.stem in DEAR else [], id=path.stem) for path in CASES]
 

@@ -136,7 +136,7 @@ def test_a_motion_that_stays_at_one_speed_stays_in_its_steady_state(change):
 
 def test_asperities_that_rub_by_a_shear_stress_do_so_over_their_area_at_each_instant():
     """At one speed as in steady sliding; and with it the friction is a factor on that of a stress of one size."""
-    seal = sb.load_case("examples/rod_seal.toml").contact
+    seal = sb.load_case("examples/rod_seal.toml").contact.replace(cavitation="none")
     one, fast = (seal.replace(shear_stress="0.2 MPa", speed_exponent=n, reference_speed=seal.speed) for n in (0.0, 0.5))
     slow = 0.2 * seal.speed
     found = sb.stroke(fast, sb.motions.Table([0, 1e-3], [slow, slow]), steps=16)
@@ -168,7 +168,7 @@ def test_a_speed_that_rises_and_falls_has_the_friction_of_an_independent_scheme(
 def test_a_film_that_ends_turns_with_the_motion():
     """The way back is the mirror image of the way out, also where the film ends and thins."""
     contact = CONTACT.replace(cavitation="exit", fluid=sb.fluids.Carreau("1 ms", 0.8))
-    found = sb.stroke(contact, sine(8), steps=48)
+    found = sb.stroke(contact, sine(8), steps=48, cycles=2)
     for name in ("contact_load_share", "friction_fluid", "minimum_gap"):
         out, back = np.abs(getattr(found, name)[24:49]), np.abs(getattr(found, name)[48:73])
         assert np.allclose(out, back, atol=0.01 * back.max()), name
@@ -185,7 +185,7 @@ def out_and_back(out, back, half_widths=10.0, part=0.9):
 def test_a_contact_that_runs_into_a_thick_wake_is_flooded():
     """The wake of the fast way out is more than the slow way back can draw in."""
     contact, motion = CONTACT.replace(cavitation="exit"), out_and_back(SPEED, 0.1 * SPEED)
-    flooded, own = (sb.stroke(contact, motion, steps=64, inlet=inlet) for inlet in ("flooded", "own-wake"))
+    flooded, own = (sb.stroke(contact, motion, steps=40, inlet=inlet) for inlet in ("flooded", "own-wake"))
     for name in flooded.errors:
         assert np.allclose(getattr(own, name), getattr(flooded, name), rtol=1e-6, atol=0), name
     assert "has what the contact has left behind itself" in own.notes[0] and "is flooded" in flooded.notes[0]
@@ -194,7 +194,8 @@ def test_a_contact_that_runs_into_a_thick_wake_is_flooded():
 def test_a_contact_that_runs_into_a_thin_wake_draws_in_no_more_than_that():
     """On the fast way back the film is about that of the slow way out, a third of that of a flooded inlet."""
     contact, motion = CONTACT.replace(cavitation="exit"), out_and_back(0.1 * SPEED, SPEED)
-    flooded, own = (sb.stroke(contact, motion, steps=400, inlet=inlet) for inlet in ("flooded", "own-wake"))
+    own, few = (sb.stroke(contact, motion, steps=steps, inlet="own-wake") for steps in (200, 40))
+    flooded = sb.stroke(contact, motion, steps=40)
     slow = sb.solve(contact.replace(speed=0.1 * SPEED))
     film = slow.flux_gap * contact.hertz.indentation
     passed = 2 * np.abs(own.right_flow[-1]) / SPEED
@@ -202,20 +203,18 @@ def test_a_contact_that_runs_into_a_thin_wake_draws_in_no_more_than_that():
     assert 0.99 < own.central_gap[-1] / own.central_gap[0] < 1.01 < 2.5 < flooded.central_gap[-1] / flooded.central_gap[0]
     assert own.friction[-1] < 10 * flooded.friction[-1] < 0
     # The difference is within the error of the fewest steps that a motion may have.
-    few = sb.stroke(contact, motion, steps=40, inlet="own-wake")
     assert abs(few.central_gap[-1] - own.central_gap[-1]) < few.errors["central_gap"][-1]
 
 
 def test_no_liquid_comes_out_of_a_wake_that_has_not_gone_into_it():
     """On no position of the way back has it drawn in more than it has left from there on: a flooded inlet has."""
     contact = CONTACT.replace(cavitation="exit")
-    own, flooded = (sb.stroke(contact, sine(8), steps=48, cycles=3, inlet=inlet) for inlet in ("own-wake", "flooded"))
+    own, flooded = (sb.stroke(contact, sine(8), steps=48, cycles=2, inlet=inlet) for inlet in ("own-wake", "flooded"))
     for found, holds in ((own, True), (flooded, False)):
-        for flow, turns in ((found.right_flow, (60, 108)), (-found.left_flow, (36, 84))):
+        for flow, turn in ((found.right_flow, 60), (-found.left_flow, 36)):
             gone = np.concatenate([[0.0], np.cumsum(0.5 * (flow[1:] + flow[:-1]) * np.diff(found.time))])
-            for turn in turns:
-                drawn, left = gone[turn] - gone[turn : turn + 25], gone[turn] - gone[turn - 24 : turn + 1][::-1]
-                assert bool((drawn < left + 0.01 * np.ptp(gone)).all()) is holds
+            drawn, left = gone[turn] - gone[turn : turn + 25], gone[turn] - gone[turn - 24 : turn + 1][::-1]
+            assert bool((drawn < left + 0.01 * np.ptp(gone)).all()) is holds
     last = own.last_cycle
     assert np.abs(own.friction[last]).max() > 1.2 * np.abs(flooded.friction[last]).max()
     assert own.work > 1.2 * flooded.work
@@ -230,42 +229,24 @@ def test_a_thick_film_is_squeezed_out_as_under_a_rigid_cylinder():
     assert np.allclose((root[-1] - root[:-1]) / (rate * (time[-1] - time[:-1])), 1, atol=1e-4)
 
 
-@pytest.mark.parametrize(
-    ("change", "word"),
-    [
-        ({"cavitation": "reform"}, "would have an edge more"),
-        ({"solid": sb.solids.StandardLinearSolid("10 ms", 3.0)}, "the body remembers"),
-        ({"slide_to_roll": 1.0}, "pure sliding"),
-        ({"roughness": 0.0}, "roughness is zero"),
-        ({"inlet": "own-wake"}, "needs a film that ends"),
-        ({"inlet": "dry"}, "'flooded' or 'own-wake'"),
-    ],
-)
-def test_what_is_not_solved_in_time_is_refused_by_its_name(change, word):
-    inlet = change.pop("inlet", "flooded")
-    with pytest.raises(sb.InputError, match=word):
-        sb.stroke(CONTACT.replace(**change), sine(40), inlet=inlet)
-
-
-@pytest.mark.parametrize(
-    ("motion", "arguments", "word"),
-    [
-        (sine(40), {"steps": 41}, "even"),
-        (sine(40), {"cycles": 0}, "cycles = 0"),
-        (sb.motions.Ramp(SPEED, 2 * SPEED, 1.0), {"cycles": 2}, "does not end as it begins"),
-        (sb.motions.Ramp(0.0, SPEED, 1.0), {}, "begins with the speed"),
-        (sb.motions.Table([0, 1], [0.0, 0.0]), {}, "at rest"),
-        ("to and fro", {}, "must be a motion"),
-    ],
-)
-def test_a_motion_that_cannot_be_done_is_refused(motion, arguments, word):
-    with pytest.raises(sb.InputError, match=word):
-        sb.stroke(CONTACT, motion, **arguments)
-
-
-def test_a_ball_is_refused():
-    with pytest.raises(sb.InputError, match="not of balls"):
-        sb.stroke(sb.Groups(1e-3, 0.1, 1e-4), sine(40))
+def test_what_is_not_solved_in_time_is_refused_by_its_name(subtests):
+    for contact, motion, options, word in [
+        (CONTACT.replace(cavitation="reform"), sine(40), {}, "would have an edge more"),
+        (CONTACT.replace(solid=sb.solids.StandardLinearSolid("10 ms", 3.0)), sine(40), {}, "the body remembers"),
+        (CONTACT.replace(slide_to_roll=1.0), sine(40), {}, "pure sliding"),
+        (CONTACT.replace(roughness=0.0), sine(40), {}, "roughness is zero"),
+        (CONTACT, sine(40), {"inlet": "own-wake"}, "needs a film that ends"),
+        (CONTACT, sine(40), {"inlet": "dry"}, "'flooded' or 'own-wake'"),
+        (CONTACT, sine(40), {"steps": 41}, "even"),
+        (CONTACT, sine(40), {"cycles": 0}, "cycles = 0"),
+        (CONTACT, sb.motions.Ramp(SPEED, 2 * SPEED, 1.0), {"cycles": 2}, "does not end as it begins"),
+        (CONTACT, sb.motions.Ramp(0.0, SPEED, 1.0), {}, "begins with the speed"),
+        (CONTACT, sb.motions.Table([0, 1], [0.0, 0.0]), {}, "at rest"),
+        (CONTACT, "to and fro", {}, "must be a motion"),
+        (sb.Groups(1e-3, 0.1, 1e-4), sine(40), {}, "not of balls"),
+    ]:
+        with subtests.test(word), pytest.raises(sb.InputError, match=word):
+            sb.stroke(contact, motion, **options)
 
 
 def test_a_table_of_the_same_speeds_is_the_same_motion():
