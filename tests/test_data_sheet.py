@@ -330,15 +330,17 @@ def test_a_load_among_the_levers_of_a_report_has_its_force(tmp_path):
     assert said == "0.241 (-20 %; the force +5 %)"
 
 
+RING = {
+    "viscosity": 0.04, "speed": 0.1, "roughness": 1e-6, "alpha": 2.0, "beta": 0.06, "boundary_friction": 0.3,
+    "radius": 1.765e-3, "youngs_modulus": 5.5e6, "poisson_ratio": 0.5,
+}  # fmt: skip
+
+
 @pytest.mark.quick
 def test_the_squeeze_of_an_o_ring_gives_its_load(subtests):
     """Lindley's formula at 10, 20 and 30 %: 0.0396, 0.115 and 0.242 times E d."""
-    ring = {
-        "viscosity": 0.04, "speed": 0.1, "roughness": 1e-6, "alpha": 2.0, "beta": 0.06, "boundary_friction": 0.3,
-        "radius": 1.765e-3, "youngs_modulus": 5.5e6, "poisson_ratio": 0.5,
-    }  # fmt: skip
     for squeeze, ratio in ((0.1, 0.0396), (0.2, 0.115), (0.3, 0.242)):
-        assert sb.LineContact(**ring, squeeze=squeeze).load == pytest.approx(ratio * 5.5e6 * 3.53e-3, rel=0.01)
+        assert sb.LineContact(**RING, squeeze=squeeze).load == pytest.approx(ratio * 5.5e6 * 3.53e-3, rel=0.01)
     for changed, words in (
         ({"squeeze": 0.4}, "between 0 and 0.3"),
         ({"squeeze": 0.1, "load": 700.0}, "give either load, or squeeze"),
@@ -346,25 +348,21 @@ def test_the_squeeze_of_an_o_ring_gives_its_load(subtests):
         ({"squeeze": 0.1, "youngs_modulus": None, "poisson_ratio": None, "modulus": 7e6}, "youngs_modulus is missing beside"),
     ):
         with subtests.test(words=words), pytest.raises(sb.InputError, match=words):
-            sb.LineContact(**{name: value for name, value in (ring | changed).items() if value is not None})
+            sb.LineContact(**{name: value for name, value in (RING | changed).items() if value is not None})
 
 
 @pytest.mark.quick
 def test_a_sealed_pressure_adds_its_force_on_the_width_of_the_contact(subtests):
-    ring = {
-        "viscosity": 0.04, "speed": 0.1, "roughness": 1e-6, "alpha": 2.0, "beta": 0.06, "boundary_friction": 0.3,
-        "radius": 1.765e-3, "youngs_modulus": 5.5e6, "poisson_ratio": 0.5,
-    }  # fmt: skip
-    alone = sb.LineContact(**ring, squeeze=0.1)
+    alone = sb.LineContact(**RING, squeeze=0.1)
     for pressure in (0.0, 1e5, 1e6):
-        pressed = sb.LineContact(**ring, squeeze=0.1, sealed_pressure=pressure)
+        pressed = sb.LineContact(**RING, squeeze=0.1, sealed_pressure=pressure)
         assert pressed.load - 2 * pressed.hertz.half_width * pressure == pytest.approx(alone.load, rel=1e-12)
     with pytest.raises(sb.InputError, match="sealed_pressure is given without load"):
-        sb.LineContact(**ring, sealed_pressure=1e6)
+        sb.LineContact(**RING, sealed_pressure=1e6)
+    without = {name: value for name, value in RING.items() if name != "radius"}
     with pytest.raises(sb.InputError, match="radius is missing beside sealed_pressure"):
         shape = sb.profiles.Lip(angle_oil="20 deg", angle_air="10 deg", tip_radius="0.8 mm")
-        del ring["radius"]
-        sb.LineContact(**ring, load=500, sealed_pressure=1e6, profile=shape)
+        sb.LineContact(**without, load=500, sealed_pressure=1e6, profile=shape)
 
 
 SEALS = ["shaft", pytest.param("o-ring", marks=pytest.mark.slow), pytest.param("u-cup", marks=pytest.mark.slow)]

@@ -44,7 +44,7 @@ def desk(tmp_path, monkeypatch):
     return tmp_path
 
 
-SOLVING = {"batch", "checks", "cli", "contact_laws", "fitting", "for_engineers"}
+SOLVING = {"batch", "checks", "cli", "contact_laws", "fitting", "for_engineers", "strokes", "sweep"}
 """Pages whose code takes seconds a block: `make docs` runs it."""
 
 

@@ -78,9 +78,8 @@ def experiment(seed, exact):
 def test_a_fit_reaches_its_optimum_where_errors_of_the_states_hide_it():
     # The first states are solved from others than the next ones, and their friction jumps by a hundredth of their errors.
     exact = frictions(TRUE)
-    for seed in (6, 12):
-        found = sb.fit(experiment(seed, exact), TRUE, free=["boundary_friction", "roughness"], intervals=False)
-        assert found.converged
+    found = sb.fit(experiment(6, exact), TRUE, free=["boundary_friction", "roughness"], intervals=False)
+    assert found.converged
 
 
 @pytest.mark.slow

@@ -90,24 +90,6 @@ def test_groups_of_a_worked_example():
 
 
 @reproducible
-@given(
-    speed=st.just(0.0) | st.floats(1e-12, 1e6),
-    load=st.floats(1e-8, 10.0),
-    roughness=st.just(0.0) | st.floats(1e-12, 1e3),
-    radius=factor,
-    modulus=factor,
-    viscosity=factor,
-    alpha=st.floats(0.1, 10.0),
-    beta=st.floats(1e-4, 10.0),
-)
-def test_groups_survive_the_way_through_si(speed, load, roughness, **kept):
-    groups = Groups(speed, load, roughness)
-    back = LineContact.from_groups(groups, boundary_friction=0.3, **kept)
-    assert numbers(back.groups) == pytest.approx(numbers(groups), rel=1e-13)
-    assert {name: getattr(back, name) for name in kept} == kept
-
-
-@reproducible
 @given(contacts, balls)
 def test_a_contact_survives_the_way_through_groups(line, ball):
     names = ("radius", "modulus", "viscosity", "alpha", "beta", "boundary_friction")
@@ -137,20 +119,6 @@ def test_other_base_units_leave_the_groups_unchanged(c, length, mass, time):
     assert numbers(rescaled.groups) == pytest.approx(numbers(c.groups), rel=1e-13)
     assert rescaled.hersey_number == pytest.approx(c.hersey_number, rel=1e-13)
     assert rescaled.hertz.half_width == pytest.approx(c.hertz.half_width * length, rel=1e-12)
-
-
-@reproducible
-@given(contacts)
-def test_the_same_contact_in_other_units_has_the_same_groups(c):
-    in_text = c.replace(
-        radius=f"{c.radius * 1e3!r} mm",
-        modulus=f"{c.modulus * 1e-9!r} GPa",
-        load=f"{c.load * 1e-3!r} N/mm",
-        viscosity=f"{c.viscosity * 1e3!r} cP",
-        speed=f"{c.speed * 3.6!r} km/h",
-        roughness=f"{c.roughness * 1e6!r} µm",
-    )
-    assert numbers(in_text.groups) == pytest.approx(numbers(c.groups), rel=1e-13)
 
 
 # --- elasticity ---

@@ -183,7 +183,7 @@ def test_which_criterion_of_merging_is_near_the_solver():
 
 
 def test_an_unknown_criterion_is_refused_by_name_and_what_is_never_met_is_nan():
-    with pytest.raises(sb.InputError, match="'uniform', 'plateau', 'lines' or 'weakening'"):
+    with pytest.raises(sb.InputError, match="'uniform', 'plateau', 'lines', 'weakening'"):
         transitions.roughness_without_minimum(0.1, criterion="slope")
     assert np.isnan(transitions.roughness_without_minimum(np.array([2.0, 3.0]), criterion="lines")).all()
     assert math.isnan(transitions.roughness_without_minimum(5.0, criterion="plateau"))
