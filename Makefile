@@ -46,7 +46,7 @@ help:
 	@echo "make docs       the site, build/docs/index.html, and the code of its pages      make site  the site alone"
 	@echo "make notebooks  the notebooks with results, build/notebooks"
 	@echo "make validity   docs/validity.md: the maps of the errors of all formulas"
-	@echo "make tables     docs/numerics_tables.md, hours; make tables WORDS=cost: the tables of a benchmark of that name"
+	@echo "make tables     docs/numerics_tables.md, hours; make tables WORDS=curve_speed: the tables of a benchmark of that name"
 	@echo "make atlas      the table of solved states, 6 minutes on two cores      make certificate  its errors"
 	@echo "make atlas-point  those of balls, 70 minutes of one core               make certificate TABLE=ball-exponential"
 	@echo "make clean      remove what make made"

@@ -4,7 +4,7 @@ Usage::
 
     python benchmarks/cost.py [--runs 5]
 
-Prints the tables that docs/numerics_tables.md shows.  Times are the best of several runs, one thread.
+Prints two tables.  Times are the best of several runs, one thread.
 """
 
 from __future__ import annotations
