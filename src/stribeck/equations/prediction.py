@@ -1,4 +1,4 @@
-"""The prediction of a state from others: along a path, or seen from another origin."""
+"""The prediction of a state from others along a path."""
 
 from __future__ import annotations
 
@@ -147,49 +147,3 @@ def extrapolate(history: Sequence[tuple[float, State]], s: float) -> Guess:
     weights = steady_weights([c for c, _ in history], s, MAX_AMPLIFICATION)
     states = [state for _, state in history[len(history) - len(weights) :]]
     return Extrapolation(weights, states) if len(states) > 1 else states[0]
-
-
-@dataclass(frozen=True, eq=False)
-class SeenFrom:
-    """A state seen from another origin: the guess of a film that ends at a free exit there."""
-
-    state: State  # The state, of a film with another end or none
-    exit: float  # The guessed exit [a], the new origin
-    reformation: float = math.inf  # The guessed length of the cavity [a]; infinite if the film does not re-form
-    cavity_pressure: float = 0.0  # The pressure there [p_Hz]
-    cavity_stretch: float = 1.0
-    flux: float | None = None  # The guessed flux gap [u_Hz]; that of the state if None
-
-    @property
-    def flux_gap(self) -> float:
-        """The guessed one, or that of the state."""
-        return self.state.flux_gap if self.flux is None else self.flux
-
-    @property
-    def offset(self) -> float:
-        """Offset of the state."""
-        return self.state.offset
-
-    @property
-    def minimum_position(self) -> float:
-        """Position of the minimum gap of the state, from the new origin."""
-        return self.state.exit + self.state.cavity_stretch * self.state.minimum_position - self.exit
-
-    def log_gap(self, mesh: Mesh) -> Array:
-        """Return the logarithm of the gap at the nodes of ``mesh``."""
-        return np.asarray(self.fields(mesh.nodes)[0])
-
-    def fields(self, x: Array) -> Array:
-        """Return the logarithm of the gap and the fluid pressure at ``x``; in the cavity that is the guessed one."""
-        found = self.state.fields(self._seen(x))
-        cavity = (x > 0) & (x < self.reformation)
-        found[1] = np.where(cavity, self.cavity_pressure, found[1])
-        return found
-
-    def known_on(self, x: Array) -> Array:
-        """Return the lengths of the panels of the state at ``x``."""
-        return self.state.known_on(self._seen(x))
-
-    def _seen(self, x: Array) -> Array:
-        """Return the coordinates of the state."""
-        return (x + self.exit - self.state.exit) / self.state.cavity_stretch

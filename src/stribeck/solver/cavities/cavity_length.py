@@ -7,12 +7,13 @@ suction that is needed to fill the gap again says where the film reforms.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
+from stribeck._types import Array
 from stribeck.contacts.groups import Groups
-from stribeck.equations.prediction import SeenFrom
 from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.continuation import StepPath
@@ -20,6 +21,26 @@ from stribeck.numerics.settings import COARSE_ORDER, MAX_REFINEMENTS, NEGLIGIBLE
 from stribeck.solver.cold_start import coarse_path, coarse_state, first_path
 
 __all__ = ["path_to_cavity"]
+
+
+@dataclass(frozen=True)
+class LongCavity:
+    """The guess of a film with a cavity: that of a film with an exit, whose cavity is as long as given."""
+
+    state: State
+    reformation: float  # Length of the cavity [a]
+    cavity_pressure: float  # [p_Hz]
+    cavity_stretch: float = 1.0
+
+    def __getattr__(self, name: str) -> Any:
+        """Return any other number of the film with an exit."""
+        return getattr(self.state, name)
+
+    def fields(self, x: Array) -> Array:
+        """Return the logarithm of the gap and the fluid pressure at ``x``."""
+        found = self.state.fields(x)
+        found[1] = np.where((x > 0) & (x < self.reformation), self.cavity_pressure, found[1])
+        return found
 
 
 def path_to_cavity(groups: Groups, deepest: float = -math.inf) -> StepPath[State]:
@@ -49,7 +70,7 @@ def path_to_cavity(groups: Groups, deepest: float = -math.inf) -> StepPath[State
     return found
 
 
-def _behind_exit(state: State, suction: float) -> SeenFrom:
+def _behind_exit(state: State, suction: float) -> LongCavity:
     """Return the guess of a cavity so long that the film with an exit, at its flux, reforms there with a suction."""
     nodes, film = state.mesh.nodes, state.equations.film
     x = np.geomspace(nodes[nodes > 0].min(), nodes.max(), COARSE_ORDER * state.mesh.size)
@@ -65,4 +86,4 @@ def _behind_exit(state: State, suction: float) -> SeenFrom:
     else:
         falls = np.argmax(needed)
         length = float(np.interp(-suction, -needed[falls:], x[falls:]))
-    return SeenFrom(state, state.exit, length, -suction)
+    return LongCavity(state, length, -suction)

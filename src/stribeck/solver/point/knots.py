@@ -19,12 +19,13 @@ from stribeck.numerics.settings import HALF_DIGITS, LOG_STEP, MAX_AMPLIFICATION,
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import AREA
+from stribeck.quantities.results import ByValue, equal_values
 from stribeck.solver.path.hermite_path import HermitePath, Knot
 from stribeck.solver.point.estimate import LOOSE_OBSERVABLES
 from stribeck.solver.point.level import Level, predicted
 from stribeck.solver.point.sensitivity import changes_along, measured_change
 from stribeck.solver.point.solve import solve_cold, solve_from
-from stribeck.solver.point.state import PointState, ReadState, measured
+from stribeck.solver.point.state import PointState, measured
 
 __all__ = ["BallKnots", "KnotState"]
 
@@ -193,27 +194,53 @@ class BallKnots:
         return solve_from(path.nearest(s).state, self.groups_at(s), rtol or self.rtol)
 
 
-class KnotState(ReadState):
-    """A state read off solved states with their slopes."""
+class KnotState(ByValue, PointState):
+    """A state read off solved states with their slopes, with fields of a state that is solved on first use."""
 
+    def __init__(self, problem: BallKnots, path: HermitePath, s: float, row: Array, errors: Array) -> None:
+        groups, scales = problem.groups_at(s), problem.scales(row[None], np.array([s]))[0]
+        values, absolute_errors, scales_by_name = (
+            dict(zip(OBSERVABLES, each.tolist(), strict=False)) for each in (row, errors * scales, scales)
+        )
+        vars(self).update(
+            groups=groups,
+            rtol=problem.rtol,
+            outcome=Outcome.CONVERGED,
+            values=values,
+            absolute_errors=absolute_errors,
+            scales=scales_by_name,
+            identity_error=identity_error(values, float(groups.speed), far_film(groups.model)),
+            load_error=values["contact_load_share"] + values["fluid_load_share"] - 1.0,
+            _place=(problem, path, s),
+            _within=row[len(OBSERVABLES) : len(OBSERVABLES) + len(WITHIN)].tolist(),
+            _area=(float(row[-1]), float(errors[-1] * scales[-1])),
+        )
+
+    _place: tuple[BallKnots, HermitePath, float]
     _within: list[float]
     _area: tuple[float, float]
 
-    def __init__(self, problem: BallKnots, path: HermitePath, s: float, row: Array, errors: Array) -> None:
-        scales = problem.scales(row[None], np.array([s]))[0]
-        values = dict(zip(OBSERVABLES, row.tolist(), strict=False))
-        groups = problem.groups_at(s)
-        self.read(
-            groups,
-            problem.rtol,
-            values,
-            dict(zip(OBSERVABLES, (errors * scales).tolist(), strict=False)),
-            dict(zip(OBSERVABLES, scales.tolist(), strict=False)),
-            identity_error(values, float(groups.speed), far_film(groups.model)),
-            (problem, path, s),
-        )
-        vars(self)["_within"] = row[len(OBSERVABLES) : len(OBSERVABLES) + len(WITHIN)].tolist()
-        vars(self)["_area"] = float(row[-1]), float(errors[-1] * scales[-1])
+    def __eq__(self, other: object) -> bool:
+        """Return whether groups, values and errors are equal."""
+        if type(other) is not type(self):
+            return NotImplemented
+        return all(equal_values(getattr(self, name), getattr(other, name)) for name in ("groups", "values", "absolute_errors"))
+
+    __hash__ = ByValue.__hash__
+
+    @cached_property
+    def _solved(self) -> PointState:
+        problem, path, s = self._place
+        return problem.solved_at(path, s)
+
+    mesh = property(lambda self: self._solved.mesh)
+    nodal_gap = property(lambda self: self._solved.nodal_gap)
+    nodal_contact_pressure = property(lambda self: self._solved.nodal_contact_pressure)
+    nodal_fluid_pressure = property(lambda self: self._solved.nodal_fluid_pressure)
+    fields = property(lambda self: self._solved.fields)
+    newton_steps = property(lambda self: self._solved.newton_steps)
+    krylov_steps = property(lambda self: self._solved.krylov_steps)
+    work = property(lambda self: self._solved.work)
 
     @property
     def within(self) -> Callable[[int, float], float] | None:

@@ -24,7 +24,6 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import AREA
-from stribeck.quantities.results import ByValue, equal_values
 from stribeck.solver.point.estimate import LOOSE_OBSERVABLES, WITHOUT_TOLERANCE, Pair
 
 # Friction integrals whose errors are relative to themselves; J_pcx vanishes in full films, so its scale is the friction.
@@ -136,58 +135,6 @@ def measured(
         within = FrictionWithin.of(equations, y, found)
         found |= {name: within(i, float(cut_offs[min(i, 1)])) for i, name in enumerate(WITHIN)}
     return found
-
-
-class ReadState(ByValue, PointState):
-    """A state of a path, with numbers read off the path and fields of a state that is solved on first use."""
-
-    _place: tuple[Any, Any, float]
-
-    def read(
-        self,
-        groups: Groups,
-        rtol: float,
-        values: Mapping[str, float],
-        absolute_errors: Mapping[str, float],
-        scales: Mapping[str, float],
-        identity_error: float,
-        place: tuple[Any, Any, float],
-    ) -> None:
-        """Take over the numbers of a path: ``place`` is its problem, itself and the coordinate."""
-        vars(self).update(
-            groups=groups,
-            rtol=rtol,
-            outcome=Outcome.CONVERGED,
-            values=values,
-            absolute_errors=absolute_errors,
-            scales=scales,
-            identity_error=identity_error,
-            load_error=values["contact_load_share"] + values["fluid_load_share"] - 1.0,
-            _place=place,
-        )
-
-    def __eq__(self, other: object) -> bool:
-        """Return whether groups, values and errors are equal."""
-        if type(other) is not type(self):
-            return NotImplemented
-        return all(equal_values(getattr(self, name), getattr(other, name)) for name in ("groups", "values", "absolute_errors"))
-
-    __hash__ = ByValue.__hash__
-
-    @cached_property
-    def _solved(self) -> PointState:
-        problem, path, s = self._place
-        state: PointState = problem.solved_at(path, s)
-        return state
-
-    mesh = property(lambda self: self._solved.mesh)
-    nodal_gap = property(lambda self: self._solved.nodal_gap)
-    nodal_contact_pressure = property(lambda self: self._solved.nodal_contact_pressure)
-    nodal_fluid_pressure = property(lambda self: self._solved.nodal_fluid_pressure)
-    fields = property(lambda self: self._solved.fields)
-    newton_steps = property(lambda self: self._solved.newton_steps)
-    krylov_steps = property(lambda self: self._solved.krylov_steps)
-    work = property(lambda self: self._solved.work)
 
 
 @dataclass(frozen=True)
