@@ -200,10 +200,7 @@ def mesh_for(
         x = x[(x < 0) | (x > reformation)] if ends else x
         of_film = kinks_of(guess, film.at(groups.speed), x * to_guess, closed_at) / to_guess
         kinks = np.append(kinks, of_film)
-    # Formulas are known on no panels; where numbers are read off, kinks of flow factors ask for panels that no guess has.
-    known_on = getattr(guess, "known_on", None) if tolerance >= COARSE_RTOL else None
-    shortest = None if known_on is None else lambda x: NEGLIGIBLE * known_on(x * to_guess) / to_guess
-    mesh = adapt(fields, scale, reach, order, tolerance, start, anew, kinks, shortest)
+    mesh = adapt(fields, scale, reach, order, tolerance, start, anew, kinks)
     if not ends:
         return mesh
     # Panels that do not halve leave the ends with the error of a coarse state.

@@ -117,13 +117,6 @@ class Extrapolation:
             fields[0] = sum(w * s.fields(_at_place(self, s, x))[0] for w, s in zip(self.weights, self.states, strict=True))
         return fields
 
-    def known_on(self, x: Array) -> Array:
-        """Return the lengths of the shortest panels of all states at ``x``."""
-        lengths = [s.known_on(self._in_frame(s, place)) for s, place in zip(self.states, self._places(x), strict=True)]
-        if self._in_place:
-            lengths += [s.known_on(_at_place(self, s, x)) for s in self.states]
-        return np.asarray(np.min(lengths, axis=0))
-
     def _places(self, x: Array) -> list[Array]:
         """Return where each state is looked at for ``x``: with the minimum of the gap behind it, fixed before the contact."""
         if self._moved is None:

@@ -174,10 +174,6 @@ class State:
         found[0] += np.log(self.mesh.scale**2 + x * x)
         return found
 
-    def known_on(self, x: Array) -> Array:
-        """Return the lengths of the panels at ``x``, by whose polynomials the state is known there."""
-        return self.mesh.lengths_at(self._on_panels(x))
-
     def _on_panels(self, x: Array) -> Array:
         """Return the coordinates at which the panels have what is at ``x``: they have kinks of the shape where they end."""
         places, origin = self.equations.operators.model.profile.places, self.mesh.origin

@@ -205,11 +205,6 @@ class Mesh:
         """Nodal values -> their first moment over the panels in ``x``."""
         return Matrix(self.inner_weights.matrix * self.nodes)
 
-    def lengths_at(self, x: Array) -> Array:
-        """Return the lengths of the panels at ``x``; on that through infinity the distance, over which fields change there."""
-        panel = np.searchsorted(self.edges[1:-1], x, side="right")
-        return np.where(np.abs(x) < self.edges[-1], np.diff(self.edges)[panel], np.abs(x))
-
     def locate(self, x: Array) -> tuple[Indices, Array]:
         """Return the panel of each point and its coordinate in ``[-1, 1]`` there."""
         panel = np.searchsorted(self.edges, x, side="right") - 1
@@ -310,7 +305,6 @@ def adapt(
     start: Mesh | None = None,
     anew: bool = True,
     places: Array = NO_PLACES,
-    shortest: Callable[[Array], Array] | None = None,
 ) -> Mesh:
     """Return a mesh of few panels that resolves the given fields."""
     nodes = reference(order).nodes
@@ -345,8 +339,7 @@ def adapt(
     count = 0
     while len(open_panels):
         size = tails(open_panels)
-        least = near if shortest is None else np.maximum(shortest(open_panels.mean(axis=1)), near)
-        split = (size > 1) & (open_panels[:, 1] - open_panels[:, 0] > least)
+        split = (size > 1) & (open_panels[:, 1] - open_panels[:, 0] > near)
         done.append(open_panels[~split])
         sizes.append(size[~split])
         count += int((~split).sum())
