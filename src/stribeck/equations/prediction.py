@@ -9,15 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.equations.gap import minimum_gap
 from stribeck.equations.guess import Guess
 from stribeck.equations.state import State
-from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.continuation import steady_weights
 from stribeck.numerics.panels import Mesh
-from stribeck.numerics.settings import MAX_AMPLIFICATION, SAFETY
+from stribeck.numerics.settings import MAX_AMPLIFICATION
 from stribeck.quantities.lazy import cached_property
-from stribeck.solids.solid import lengths_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,27 +57,6 @@ class Extrapolation:
         )
         return bool(in_place < in_frame)
 
-    @cached_property
-    def _moved(self) -> Array | None:
-        """Shift of the minimum of each gap behind the predicted one; None where the minimum is no moving edge."""
-        # On a viscoelastic body the film ends where the body has not yet come back, and the place moves by many lengths of the
-        # film.
-        model = self.states[-1].equations.operators.model
-        if model.cavitation is not Cavitation.NONE or not lengths_of(model.solid).memories:
-            return None
-        lowest = np.array([minimum_gap(s.mesh, s.gap)[0] for s in self.states])
-        moved = np.asarray(lowest - self.weights @ lowest)
-        return moved if SAFETY * np.abs(moved).max() < self._edge[1] else None  # so that no two places change their order
-
-    @cached_property
-    def _edge(self) -> tuple[float, float]:
-        """The middle of the pressure of the last state, and how far behind it the gap is at its minimum."""
-        last = self.states[-1]
-        load = last.mesh.weights * sum(last.equations.pressures(last.y))
-        near = np.abs(last.mesh.nodes) <= last.mesh.edges[-1]
-        middle = float(load[near] @ last.mesh.nodes[near] / load.sum())
-        return middle, minimum_gap(last.mesh, last.gap)[0] - middle
-
     @property
     def reformation(self) -> float:
         """Edge of the last state's mesh at which the film re-forms."""
@@ -101,7 +77,7 @@ class Extrapolation:
 
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
-        if self._moved is not None or self._in_place or any(s.reformation != self.reformation for s in self.states):
+        if self._in_place or any(s.reformation != self.reformation for s in self.states):
             return np.asarray(self.fields(mesh.nodes)[0])
         log_gap = np.zeros(mesh.size)
         for w, s in zip(self.weights, self.states, strict=True):
@@ -111,19 +87,11 @@ class Extrapolation:
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap and the fluid pressure at ``x``."""
         fields = np.zeros((2, x.size))
-        for w, s, place in zip(self.weights, self.states, self._places(x), strict=True):
-            fields += w * s.fields(self._in_frame(s, place))
+        for w, s in zip(self.weights, self.states, strict=True):
+            fields += w * s.fields(self._in_frame(s, x))
         if self._in_place:  # the pressure has kinks where the film ends and begins
             fields[0] = sum(w * s.fields(_at_place(self, s, x))[0] for w, s in zip(self.weights, self.states, strict=True))
         return fields
-
-    def _places(self, x: Array) -> list[Array]:
-        """Return where each state is looked at for ``x``: with the minimum of the gap behind it, fixed before the contact."""
-        if self._moved is None:
-            return [x] * len(self.states)
-        middle, distance = self._edge
-        part = np.clip((x - middle) / distance, 0.0, 1.0)
-        return [x + moved * part**2 * (3 - 2 * part) for moved in self._moved]
 
     def _in_frame(self, state: State, x: Array) -> Array:
         """Return coordinates in the frame of a state whose cavity may have another length on its mesh."""
