@@ -101,9 +101,6 @@ def mesh_for(
         pressure_scale = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
     highest = highest_degree(order)
     thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
-    sheared = 0.0
-    if closed_at is not None and tolerance < COARSE_RTOL and isinstance(guess, State) and float(guess.gap.min()) < closed_at:
-        sheared = float(guess.mesh.weights @ (1 / guess.gap))
 
     def asked(lengths: Array) -> Array:
         """Return a field that panels resolve if they are not longer than allowed: ``lengths`` over that."""
@@ -113,9 +110,6 @@ def mesh_for(
     def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
         flat = x.ravel()
         found = guess.fields(flat * to_guess if ends else flat)
-        # At infinity the guess is known from one side alone.
-        if ends and reformation == math.inf and stretch[0, 0] != 1.0 and len(found) == 2:
-            found[1] = guess.fields(-np.abs(flat))[1] * np.sign(flat)
         gap = np.exp(found[0])
         if len(found) == 2:
             fluid = found[1]
@@ -143,20 +137,11 @@ def mesh_for(
         fields = [stretch * pressures.reshape(2, *nodal), shape[None], shear[None]]
         if fractional and stretch[0, 0] != 1.0:  # what falls off with a broken power is no polynomial in 1/x
             fields[0] /= NEGLIGIBLE
-        # The drag far away counts as that in the contact, where a power of x has its pole.
-        if fractional and tolerance < COARSE_RTOL and stretch[0, 0] == 1.0:
-            fields.append(asked(np.minimum(SAFETY * half_widths / np.abs(centres), half_widths / (SAFETY * scale))))
         jumps = jump(gap, fluid) if jump is not None and stretch[0, 0] == 1.0 else None
         if jumps is not None:
             wrong = groups.speed * half_widths * jumps.reshape(x.shape)[:, :-1].max(axis=1) / x.shape[1]
             wrong /= np.fmax(np.abs(fluid).max(), 1e-300)
             fields.append(asked(wrong / error))
-        # Beside the place where the last path closes no load feels the gradient, but drag does.
-        if sheared and stretch[0, 0] == 1.0:
-            full = (flat < 0) | (flat > reformation) if ends else np.ones_like(flat, dtype=bool)
-            pressure = fluid if film.uses_pressure else None
-            stress = gap * film.at(groups.speed).gradient(gap, pressure, np.array(guess.flux_gap))
-            fields.append((np.repeat(half_widths, x.shape[1]) * np.where(full, stress, 0.0) / sheared).reshape(nodal)[None])
         if ends and jump is not None and stretch[0, 0] == 1.0:  # the liquid behind the exit fills the gap up to a kink
             h = gap.reshape(x.shape)
             partly = (x[:, 0] > 0) & (h.min(axis=1) < guess.flux_gap) & (h.max(axis=1) > guess.flux_gap)
@@ -164,10 +149,6 @@ def mesh_for(
             drag = math.pi * math.sqrt(2 / float(central_gap.max()))
             wrong = partly * kink * (2 * half_widths / x.shape[1]) ** 2 / (12 * drag * error)
             fields.append(asked(np.sqrt(wrong)))
-        if memories and stretch[0, 0] == 1.0:  # what the solid remembers behind the contact decays where nothing presses
-            behind = x - (centre + float(width.mean()))
-            fading = [min(1 / de, de) ** 0.5 * np.exp(-np.maximum(behind, 0.0) / de) for de in memories]
-            fields.append(np.where(np.all(behind > 0, axis=1)[:, None], np.stack(fading), 0.0))
         return np.concatenate(fields)
 
     reach = 8 * scale
