@@ -16,13 +16,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import lru_cache
 
 import numpy as np
-from numpy.polynomial import legendre
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Value
+from stribeck.numerics.fourier_panels import lobatto
 
 ELEMENT_DEGREE = 16  # Degree of the elements: the integrals err by 1e-12 for loads up to 1 - 1e-3.
 ELEMENTS = 12  # Number of the elements.
@@ -71,17 +71,17 @@ class Slow:
 @lru_cache(maxsize=512)
 def slow_contact(A: float) -> Slow:
     """Return the contact at -1/3 ln F = A > 0."""
-    nodes, rule, D = _reference()
+    rule = lobatto(ELEMENT_DEGREE)
     delta = np.arcsin(np.sqrt(-np.expm1(-2 * A)))
     edges = np.linspace(0.0, np.arcsinh(DOMAIN_LENGTH / delta), ELEMENTS + 1)
     half = 0.5 * (edges[1] - edges[0])
-    v = edges[:-1, None] + half * (nodes + 1)
+    v = edges[:-1, None] + half * (rule.nodes + 1)
     u = delta * np.sinh(v)
     r, p_0 = np.tanh(u), 1 / np.cosh(u)
     H = A + np.log1p(2 * np.sinh(u / 2) ** 2)
     stretch = half * delta * np.cosh(v) * p_0**2
-    weights = rule * stretch
-    d_dr = D / stretch[..., None]
+    weights = rule.weights * stretch
+    d_dr = rule.derivative / stretch[..., None]
     n = ELEMENTS * ELEMENT_DEGREE + 1
     matrix, right = np.zeros((n, n)), np.zeros(n)
     for k in range(ELEMENTS):
@@ -103,19 +103,3 @@ def of_gap(A: Value, number: Callable[[Slow], float]) -> Array:
     different, where = np.unique(gaps, return_inverse=True)
     found = [number(slow_contact(each)) if 0 < each < MAX_GAP else np.nan for each in different.tolist()]
     return np.asarray(np.array(found)[where.reshape(gaps.shape)])
-
-
-@cache
-def _reference() -> tuple[Array, Array, Array]:
-    """Return Lobatto's nodes and weights and the matrix of the derivative."""
-    top = np.zeros(ELEMENT_DEGREE + 1)
-    top[-1] = 1.0
-    inner = np.sort(legendre.legroots(legendre.legder(top)).real)
-    nodes = np.concatenate([[-1.0], inner, [1.0]])
-    values = legendre.legval(nodes, top)
-    weights = 2 / (ELEMENT_DEGREE * (ELEMENT_DEGREE + 1) * values**2)
-    apart = nodes[:, None] - nodes + np.eye(ELEMENT_DEGREE + 1)
-    D = np.asarray(values[:, None] / values / apart)
-    D -= np.diag(np.diag(D))
-    D -= np.diag(D.sum(axis=1))
-    return nodes, weights, D
