@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from stribeck.surfaces.topography import Topography
 __all__ = ["Form", "Trend", "detrended"]
 
 Trend = Literal["none", "mean", "tilt", "curvature"]
-TRENDS = ("none", "mean", "tilt", "curvature")
+TRENDS = get_args(Trend)
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from stribeck.asymptotics.dry.rest import (
     offset_small_indentation,
 )
 from stribeck.asymptotics.formula import Limit, Value, fluid_number, formula
-from stribeck.asymptotics.rough.perturbation import PhiForm, phi_of, pressure_moment, shear
+from stribeck.asymptotics.rough.perturbation import PhiForm, phi_of, pressure_moment, shear, smoother
 from stribeck.contacts.groups import Groups
 
 __all__ = [
@@ -48,13 +48,6 @@ SLOW_RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-3), Li
 SMALL_SHARE_RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 0.01))
 
 
-def _smoother(relative_roughness: float) -> Groups:
-    # So slow that the fluid carries 1e-6 of the load, and terms of higher order count for nothing.
-    load = 1e-3
-    speed = 1e-3 * float(phi_of(load)) ** -0.5 * relative_roughness**2
-    return Groups(speed, load, relative_roughness * load)
-
-
 def _slower(fluid_number: float) -> Groups:
     return Groups(fluid_number * 1e-12, 0.1, 1e-7)
 
@@ -65,7 +58,7 @@ _slow = partial(
     limits=SMALL_SHARE_RANGE,
     small="relative_roughness",
     error_order=2 / 3,
-    approach=_smoother,
+    approach=smoother(1e-3),
     steps=(1e-3, 1e-4, 1e-5),
 )
 

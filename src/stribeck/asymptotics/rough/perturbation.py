@@ -8,6 +8,7 @@ Source: [BP] Appendix C and D, with the cubes that the former lacks; theory.md, 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
 from typing import Literal, get_args
 
@@ -97,14 +98,18 @@ def shear(load: Value) -> Value:
     return of_load(load, lambda c: 2 * c.integral(1 / c.H + 3 * c.first(2)))
 
 
-def _slow(relative_roughness: float) -> Groups:
-    # So slow that the fluid carries 1e-8 of the load, and terms of higher order count for nothing.
+def smoother(root: float) -> Callable[[float], Groups]:
+    """Return groups by their roughness, so slow that the fluid carries the square of ``root``: higher orders count nothing."""
     load = 1e-3
-    return Groups(1e-4 * float(phi_of(load)) ** -0.5 * relative_roughness**2, load, relative_roughness * load)
+
+    def approach(kappa: float) -> Groups:
+        return Groups(root * float(phi_of(load)) ** -0.5 * kappa**2, load, kappa * load)
+
+    return approach
 
 
 _expansion = partial(
-    formula, plane="mixed", small="relative_roughness", error_order=2 / 3, approach=_slow, steps=(1e-3, 1e-4, 1e-5)
+    formula, plane="mixed", small="relative_roughness", error_order=2 / 3, approach=smoother(1e-4), steps=(1e-3, 1e-4, 1e-5)
 )
 
 

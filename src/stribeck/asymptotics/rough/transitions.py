@@ -107,17 +107,13 @@ def speed_at_minimum(
     median; beyond, 9 % at 1e-4, 10 % at 3 and 27 % at 10.  For mu0 = beta = 1 ``"exact"`` within 1.1 % at relative roughness
     1e-4, up to 35 % above at 0.01; as printed from 14 % below to 12 % above, as its two errors cancel.
     """
-    form = "leading" if printed else form
-    kappa = groups.relative_roughness
-    c = PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT
-    if form == "uniform":
+    if form == "uniform" and not printed:
         ratio = film_ratio_at_minimum(groups, boundary_friction, beta)
-    elif printed:
-        ratio = _leading_as_printed(groups, boundary_friction, beta)
     else:
-        ratio = separation_at_minimum.function(groups, boundary_friction, beta, form)
+        ratio = _ratio_of_paper(groups, boundary_friction, beta, form, printed)
+    c = PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT
     with np.errstate(all="ignore"):
-        return np.power(kappa * ratio / c, 5 / 3)
+        return np.power(groups.relative_roughness * ratio / c, 5 / 3)
 
 
 @_at_minimum(
@@ -147,18 +143,13 @@ def friction_at_minimum(
 
     [BP] Eq. (minimal_friction) follows from Eqs. (friction_hydro-mixed_transition_dl) and (Lambda_solution).
     """
-    form = "leading" if printed else form
-    c = PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT
-    if form == "uniform":
+    if form == "uniform" and not printed:
         speed = speed_at_minimum.function(groups, boundary_friction, beta)
         return (
             mixed.friction.function(Groups(_known(speed), groups.load, groups.roughness), boundary_friction, beta) + 0 * speed
         )
-    ratio = (
-        _leading_as_printed(groups, boundary_friction, beta)
-        if printed
-        else separation_at_minimum.function(groups, boundary_friction, beta, form)
-    )
+    ratio = _ratio_of_paper(groups, boundary_friction, beta, form, printed)
+    c = PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT
     scale: Value = 4 * beta / (3 * math.pi * c ** (5 / 3)) * np.power(groups.roughness, 2 / 3) * np.power(groups.load, -1 / 6)
     with np.errstate(all="ignore"):
         bracket: Value = 2 / 3 * np.power(ratio, -1 / 3) + np.power(ratio, -2 / 3 if printed else 2 / 3)
@@ -196,7 +187,10 @@ def speed_boundary_to_mixed(groups: Groups, *, printed: bool = False) -> Value:
         return found[()]
 
 
-def _leading_as_printed(groups: Groups, boundary_friction: float, beta: float) -> Value:
+def _ratio_of_paper(groups: Groups, boundary_friction: float, beta: float, form: Form, printed: bool) -> Value:
+    """Return Lambda at the minimum of the friction of [BP]; its leading form with the constant 0.44 if ``printed``."""
+    if not printed:
+        return separation_at_minimum.function(groups, boundary_friction, beta, form)
     with np.errstate(all="ignore"):
         leading: Value = -np.log(weakening_number(groups, boundary_friction, beta, printed=True))
     return leading

@@ -10,7 +10,7 @@ from stribeck._types import Array
 from stribeck.asymptotics.rough import boundary, perturbation
 from stribeck.curves.result import StribeckCurve
 from stribeck.figures import style
-from stribeck.figures.article.stribeck_cases import CASES, drawn_cases, give_cases, over, solved_cases
+from stribeck.figures.article.stribeck_cases import CASES, drawn_cases, give_cases, solved_cases
 from stribeck.figures.job import FigureJob
 from stribeck.figures.style import Axes, Dataset, Figure
 
@@ -49,7 +49,7 @@ PHI_LAWS = {
 def compute(work: FigureJob) -> Dataset:
     """Solve the curves, take one apart, and compare the load on the fluid and phi with their laws."""
     curves = solved_cases(work, SPEED_RANGE, points=85)
-    friction, law = over(curves, "friction"), over(curves, "hydrodynamic_friction")
+    friction, _ = give_cases(work, curves)
     share = np.array([curve.observable("contact_load_share") for curve in curves])
     boundary_law = np.array([boundary.friction.function(curve.groups, viscous="neglected") for curve in curves])
     shown = _taken_apart(curves[CASE_IN_PARTS])
@@ -83,11 +83,9 @@ def compute(work: FigureJob) -> Dataset:
         f"{slope[fitted].min():.1f} to {slope[fitted].max():.1f}; our closed form within {100 * off['phi_closed'].max():.2f} "
         "%."
     )
-    work.along(speed=(curves[0].values, "speed group lambda"), phi_load=(loads, "load group"))
+    work.along(phi_load=(loads, "load group"))
     work.give(
         ("case", "speed"),
-        friction=(friction, "friction coefficient, definition published"),
-        hydrodynamic_friction=(law, "friction of smooth surfaces by the root of squares of the paper"),
         contact_load_share=(share, "part of the load on asperities"),
         boundary_friction=(boundary_law, "mu_0 (1 - F_f/F_N) with F_f from phi by quadrature"),
     )
@@ -101,7 +99,6 @@ def compute(work: FigureJob) -> Dataset:
         share_at_criterion=(at_one, "part of the load on the fluid where lambda^2 phi/kappa^4 = 1"),
         **{f"{name}_ratio": (ratio, near_one.format(name)) for name, ratio in ratios.items()},
     )
-    give_cases(work)
     return work.dataset(finding, shown_case=CASE_IN_PARTS)
 
 

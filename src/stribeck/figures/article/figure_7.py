@@ -49,8 +49,7 @@ MAX_SOLID_FRICTION_SHARE = 1e-3  # Share of friction from asperities below which
 def compute(work: FigureJob) -> Dataset:
     """Solve the curves and find their minima."""
     curves = solved_cases(work, SPEED_RANGE, points=67)
-    friction, hersey = over(curves, "friction"), over(curves, "hersey_number")
-    law = over(curves, "hydrodynamic_friction")
+    (friction, law), hersey = give_cases(work, curves), over(curves, "hersey_number")
     uniform = np.array([hydrodynamic.friction_uniform.function(curve.groups) for curve in curves])
     fluid_film = over(curves, "friction.asperities") < MAX_SOLID_FRICTION_SHARE * friction
     off, ours = (np.where(fluid_film, friction / x - 1, np.nan) for x in (law, uniform))
@@ -77,15 +76,12 @@ def compute(work: FigureJob) -> Dataset:
         "with roughness 1e-4 and prints no table of the others."
     )
     work.along(
-        speed=(curves[0].values, "speed group lambda"),
         predicted_load=(LOADS, "load group"),
         predicted_roughness=(np.geomspace(*PREDICTED_ROUGHNESS_RANGE, 61), "roughness group h_rms"),
     )
     work.give(
         ("case", "speed"),
         hersey_number=(hersey, "Hersey number eta U/F_N for beta = 1"),
-        friction=(friction, "friction coefficient, definition published"),
-        hydrodynamic_friction=(law, "friction of smooth surfaces by the root of squares of the paper"),
         uniform_friction=(uniform, "friction of smooth surfaces by our uniform law"),
         distance=(off, "friction over hydrodynamic_friction - 1 where asperities cause < 0.1 % of it"),
         uniform_distance=(ours, "the same over uniform_friction"),
@@ -94,7 +90,6 @@ def compute(work: FigureJob) -> Dataset:
     work.give("speed", slope=(slopes, "d ln friction / d ln Hersey number of the first case, where hydrodynamic"))
     work.give(("predicted_load", "predicted_roughness"), predicted_separation=(predicted, "Lambda at the minimum, law"))
     work.give("case", **{name: (values, f"{name.replace('_', ' ')} of friction") for name, values in lowest.items()})
-    give_cases(work)
     give_reports(work)
     return work.dataset(finding, reports="; ".join(REPORTED_LAMBDA))
 

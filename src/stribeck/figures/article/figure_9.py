@@ -50,7 +50,7 @@ LAMBDA_FORMS: tuple[transitions.Form, ...] = ("exact", "expansion", "uniform")
 def compute(work: FigureJob) -> Dataset:
     """Solve the curves and their minima, and compare them with the formulas."""
     curves = solved_cases(work, SPEED_RANGE, points=67)
-    friction = over(curves, "friction")
+    friction, _ = give_cases(work, curves)
     laws = {
         "law_large": np.array([mixed.friction.function(curve.groups, film="large") for curve in curves]),
         "law_uniform": np.array([mixed.friction.function(curve.groups, film="uniform") for curve in curves]),
@@ -82,16 +82,12 @@ def compute(work: FigureJob) -> Dataset:
     near = (film > MIN_FILM_RATIO) & (film < MAX_FILM_RATIO) & (relative <= MAX_KAPPA)
     finding = _finding(errors, near, ratio, ratios, lowest, minima)
     work.along(
-        speed=(curves[0].values, "speed group lambda"),
         minimum_load=(LOADS, "load group"),
         kappa=(KAPPAS, "relative roughness h_rms/F"),
         k=(numbers, "k = 2/(9 c^(5/3)) beta h_rms^(2/3) F^(1/3)/mu_0"),
     )
-    smooth = over(curves, "hydrodynamic_friction")
     work.give(
         ("case", "speed"),
-        friction=(friction, "friction coefficient, definition published"),
-        hydrodynamic_friction=(smooth, "friction of smooth surfaces, root of squares"),
         law_large=(laws["law_large"], "friction by the formula of the paper, film of slow speed"),
         law_uniform=(laws["law_uniform"], "friction by our formula for any film"),
         large_error=(errors["large_error"], "relative error of law_large against the solver"),
@@ -111,7 +107,6 @@ def compute(work: FigureJob) -> Dataset:
         **{name: (value, f"minimum friction, {name.split('_')[1]}") for name, value in minima.items()},
     )
     work.give("k", lambda_of_number=(against, "Lambda at the minimum by Lambert's W"))
-    give_cases(work)
     give_reports(work)
     return work.dataset(finding, reports="; ".join(REPORTED_LAMBDA))
 

@@ -38,10 +38,18 @@ def solved_cases(work: FigureJob, speed: tuple[float, float], points: int, **opt
     return [work.curve(load=load, roughness=rough, speed=speed, points=points, **options) for load, rough in CASES]
 
 
-def give_cases(work: FigureJob) -> None:
-    """Take the coordinates of the dimension ``case``."""
+def give_cases(work: FigureJob, curves: list[StribeckCurve]) -> tuple[Array, Array]:
+    """Take the curves of the cases; return their friction, and that of smooth surfaces."""
     loads, roughnesses = zip(*CASES, strict=True)
+    friction, smooth = over(curves, "friction"), over(curves, "hydrodynamic_friction")
     work.along("case", load=(loads, "load group"), roughness=(roughnesses, "roughness group h_rms"))
+    work.along(speed=(curves[0].values, "speed group lambda"))
+    work.give(
+        ("case", "speed"),
+        friction=(friction, "friction coefficient, definition published"),
+        hydrodynamic_friction=(smooth, "friction of smooth surfaces by the root of squares of the paper"),
+    )
+    return friction, smooth
 
 
 def give_reports(work: FigureJob) -> None:
