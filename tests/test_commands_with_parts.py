@@ -35,7 +35,7 @@ SHOWN = {
     ("point", "layer"): "layer",
 }
 COMMANDS = {
-    "solve": ["--rtol", "1e-3"],
+    "solve": ["--rtol", "1e-2"],
     "curve": ["--points", "3", "--rtol", "1e-3"],
     "check": [],
     "regimes": [],

@@ -4,6 +4,9 @@ The true error is measured on a mesh with more nodes on each panel and with pane
 it owes nothing to the choices of the solver.
 """
 
+from dataclasses import replace
+from functools import cache
+
 import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
@@ -16,6 +19,7 @@ from stribeck.equations.gap import minimum_gap
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import ROW, changes, observables
 from stribeck.numerics.panels import Mesh
+from stribeck.surfaces import SelfAffine, persson_law
 
 SEED = 27_644_437
 TYPICAL = {
@@ -38,6 +42,24 @@ def box(number, seed):
         if i % 12 == 9:
             kappa = 0.0
         yield sb.Groups(speed, load, kappa * load)
+
+
+@cache
+def laws():
+    s = np.linspace(0.05, 6.0, 40)
+    return {
+        "persson": persson_law(SelfAffine(h_rms=1e-6, q0=1e4, q1=1e9, hurst=0.8)),
+        "narrow": persson_law(SelfAffine(h_rms=1e-6, q0=1e5, q1=1e6, hurst=0.5, roll_off=2e5), gamma=1.0),
+        "greenwood-williamson": sb.contact_laws.GreenwoodWilliamson(),
+        "greenwood-tripp": sb.contact_laws.GreenwoodTripp(),
+        "table": sb.contact_laws.TableLaw(s, np.exp(-s) + 0.3 * np.exp(-3 * s)),
+        "function": sb.contact_laws.FunctionLaw(lambda s: -s - np.log(s)),
+    }
+
+
+def under(name, number, seed):
+    """Return random rough groups under a contact law."""
+    return [replace(groups, law=laws()[name]) for groups in box(number, seed) if groups.roughness > 0]
 
 
 def corners():
@@ -197,3 +219,30 @@ def test_two_hundred_random_states_at_a_small_tolerance_cover_their_errors(true_
         errors.append(np.nanmax(true_errors(s)) / max(s.error_estimate, 1e-11))
     assert np.mean(np.array(errors) <= 1) >= 0.95
     assert max(errors) < 10
+
+
+# --- under every contact law ---
+
+
+def test_random_states_under_every_law_are_solved_and_their_errors_covered(subtests, true_errors):
+    for number, name in enumerate(laws()):
+        with subtests.test(name=name):
+            assert (check(under(name, 2, SEED + 10 + number), true_errors)[0] <= 1).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", list(laws()))
+def test_a_hundred_random_states_under_every_law_are_solved_and_their_errors_covered(name, true_errors):
+    assert (check(under(name, 100, SEED + 1), true_errors)[0] <= 1).mean() >= 0.95
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", list(laws()))
+def test_random_states_under_every_law_reach_a_small_tolerance_or_say_that_rounding_bounds_it(name, true_errors):
+    covered = []
+    for groups in under(name, 20, SEED + 2):
+        s = sb.solve(groups, rtol=1e-9, on_failure="return")
+        assert s.outcome in (Outcome.CONVERGED, Outcome.ROUNDING)
+        assert s.error_estimate <= 1e-9 or s.outcome is Outcome.ROUNDING
+        covered.append(np.nanmax(true_errors(s)) <= max(s.error_estimate, 1e-11))
+    assert np.mean(covered) >= 0.95
