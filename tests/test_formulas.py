@@ -277,7 +277,7 @@ def test_every_formula_says_the_range_for_which_its_error_was_scanned():
 # --- the range ---
 
 SPEEDS = (0.0, 1e-12, 3.0, 1e280)
-LOADS = (1e-5, 0.1, 30.0)
+LOADS = (1e-5, 30.0)
 KAPPAS = (0.0, 1e-200, 1e-3, 1e280)
 
 

@@ -101,8 +101,8 @@ def test_the_command_gives_the_models_error_first(folder, capsys):
     assert lines[0].startswith("low: the errors of its inputs are") and "measured over predicted is 1.25 to 1.25" in lines[0]
     assert "Not counted, as their errors are not known: [contact] viscosity." in lines
     assert "Not known: nothing" in lines
-    assert "[contact] load = 30 N/m ± 10 %: weight" in call(capsys, "experiment", folder, "-v").out
-    found = json.loads(call(capsys, "experiment", folder, "--json").out)
+    assert "[contact] load = 30 N/m ± 10 %: weight" in call(capsys, "experiment", folder, "--model", "low", "-v").out
+    found = json.loads(call(capsys, "experiment", folder, "--model", "low", "--json").out)
     assert found["models"]["low"]["ratio"] == pytest.approx([1.25, 1.25], rel=1e-6)
 
 
