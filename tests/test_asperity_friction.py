@@ -50,18 +50,16 @@ def test_near_full_contact_friction_is_the_stress_times_the_dry_width(seal):
 
 
 @pytest.mark.parametrize(
-    ("h_rms", "shear", "ratios"),
-    [(0.3e-6, True, (1.28, 1.50, 1.70)), (0.3e-6, False, (1.63, 2.26, 2.89)), (20e-6, True, (1.63, 2.26, 2.89))],
+    ("h_rms", "shear", "ratio"),
+    [(0.3e-6, True, 1.70), (0.3e-6, False, 2.89), (20e-6, True, 2.89)],
     ids=("stress", "coefficient", "stress, small area"),
 )
-def test_o_rings_follow_the_width_and_not_the_load_where_a_stress_acts_over_all_of_it(seal, h_rms, shear, ratios):
+def test_o_rings_follow_the_width_and_not_the_load_where_a_stress_acts_over_all_of_it(seal, h_rms, shear, ratio):
     """Load per length of the O-ring by its squeeze and by the sealed pressure on its cord of 3.53 mm."""
     friction = {"shear_stress": TAU} if shear else {"boundary_friction": 0.3}
     ring = with_heights(seal, h_rms, speed=0.0, cavitation="none", **friction)
-    forces = [
-        load * float(sb.solve(ring.replace(load=load)).friction) for load in 770 + 3.53e-3 * 1e5 * np.array([1, 3, 5, 7])
-    ]
-    assert np.array(forces[1:]) / forces[0] == pytest.approx(ratios, rel=0.02)
+    low, high = (load * float(sb.solve(ring.replace(load=load)).friction) for load in 770 + 3.53e-3 * 1e5 * np.array([1, 7]))
+    assert high / low == pytest.approx(ratio, rel=0.02)
 
 
 def test_friction_has_no_unit(seal):
@@ -114,8 +112,8 @@ def test_a_ball_rubs_by_its_real_area():
 
 def test_a_curve_has_the_friction_of_its_states_and_its_least(seal):
     contact = seal.replace(shear_stress=TAU, speed_exponent=0.1)
-    curve = sb.stribeck_curve(contact, speed=(0.1, 2.0), points=9)
-    for i in (0, 4, 8):
+    curve = sb.stribeck_curve(contact, speed=(0.1, 2.0), points=3)
+    for i in (0, 2):
         state = sb.solve(contact.replace(speed=curve.values[i]), rtol=1e-9)
         allowed = state.friction.error + curve.friction.error[i]
         assert abs(state.friction.total - curve.friction.total[i]) <= allowed

@@ -55,7 +55,7 @@ def found():
 def test_each_state_has_the_error_it_states(found):
     assert found.ok.all()
     assert (found.error_estimate <= 1e-6).all()
-    for i in (0, 3, 6, 9, 12, 15, 18, 21):
+    for i in (0, 9, 12, 21):
         exact = sb.solve(one(found.groups, i), rtol=1e-9)
         assert_states_its_errors(found, exact, i)
         assert found.minimum_position[i] == pytest.approx(exact.minimum_position, abs=1e-3)
@@ -134,3 +134,16 @@ def test_no_states_are_no_work():
     found = sb.solve_batch(sb.Groups(np.zeros(0), 0.1, 1e-3))
     assert found.central_gap.shape == (0,)
     assert found.error_estimate.shape == (0,)
+
+
+def test_groups_made_of_others_share_their_physics():
+    law = sb.contact_laws.GreenwoodTripp()
+    ball = sb.Groups(1e-2, 1e-3, 1e-4, law=law, geometry="point")
+    curve = sb.stribeck_curve(ball, load=np.array([1e-3, 2e-3]), rtol=1e-2)
+    batch = sb.solve_batch(ball, load=[1e-3, 2e-3], rtol=1e-2)
+    for groups in (curve.groups, curve.solutions[1].groups, batch.groups):
+        assert (groups.law, groups.geometry, groups.model) == (law, "point", ball.model)
+    line = sb.Groups(1e-3, 0.1, 1e-4, law=law)
+    diagram = sb.phase_diagram(line, load=[0.1], roughness=[1e-4], speed=[1e-3], rtol=1e-4)
+    assert diagram.attrs["contact_law"] == "greenwood-tripp"
+    assert diagram.central_gap.item() == pytest.approx(sb.solve(line, rtol=1e-4).central_gap, rel=2e-4)

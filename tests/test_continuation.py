@@ -86,16 +86,6 @@ def test_a_path_hits_its_ends_exactly(subtests):
             assert (np.diff(path.coordinates) * np.sign(stop - start) > 0.0).all()
 
 
-def test_steps_grow_with_easy_corrections_and_shrink_with_hard_ones():
-    easy = np.diff(Steps(Corrector(effort=1), first=0.1).to(100.0, 0.0).coordinates)
-    hard = np.diff(Steps(Corrector(effort=9), first=0.1).to(0.195, 0.0).coordinates)
-    even = np.diff(Steps(Corrector(effort=4), first=0.1).to(2.0, 0.0).coordinates)
-    np.testing.assert_allclose(easy[1:5] / easy[:4], 2.0)
-    np.testing.assert_allclose(hard[1:5] / hard[:4], 0.5)
-    np.testing.assert_allclose(even[:-2], 0.1)
-    np.testing.assert_allclose(easy.max(), 6.0)
-
-
 def test_a_failed_step_is_retried_shorter_and_nothing_behind_it_is_lost():
     corrector = Corrector(fails=lambda s, before: s > 1.0 and s - before > 0.03)
     path = Steps(corrector, first=0.1).to(2.0, 0.0)
@@ -107,16 +97,6 @@ def test_a_failed_step_is_retried_shorter_and_nothing_behind_it_is_lost():
             assert following - same[-1] == pytest.approx(0.5 * (s - history[-1]))
             assert same == history
     assert all(state.outcome.ok for state in path.states)
-
-
-def test_the_step_after_a_retried_one_does_not_grow():
-    corrector = Corrector(fails=lambda s, before: s - before > 0.15, effort=1)
-    Steps(corrector, first=0.1).to(5.0, 0.0)
-    steps = [s - history[-1] for s, history in corrector.asked[1:-2]]
-    failed = [i for i, step in enumerate(steps[:-2]) if step > 0.15]
-    assert len(failed) > 5
-    for i in failed:
-        np.testing.assert_allclose(steps[i + 1 : i + 3], 0.5 * steps[i])
 
 
 def test_a_state_that_is_none_counts_as_a_failure():
@@ -152,18 +132,6 @@ def test_a_path_begins_at_a_known_state():
     path = Steps(corrector, first=0.1).to(3.0, (0.0, known))
     assert path.outcome.ok and path.states[0] is known
     assert corrector.asked[0] == (0.1, [0.0])
-
-
-def test_the_corrector_sees_the_last_accepted_states_only():
-    corrector = Corrector(fails=lambda s, before: s - before > 0.2)
-    path = Steps(corrector, first=0.1).to(2.0, 0.0)
-    accepted = []
-    for s, history in corrector.asked:
-        assert history == accepted[-4:]
-        if not (accepted and corrector.fails(s, accepted[-1])):
-            accepted.append(s)
-    assert accepted == path.coordinates.tolist()
-    assert len(corrector.asked) > len(accepted)
 
 
 def test_extrapolation_is_exact_for_polynomials_of_its_order():

@@ -1,6 +1,7 @@
 """Fits of measured friction: exact on exact data, honest about what data do not say, and never silent about convergence."""
 
 import importlib
+import itertools
 import json
 import math
 import pickle
@@ -253,6 +254,9 @@ def test_three_tied_inputs_are_told_apart_from_what_is_known():
     assert tied.names == ("modulus", "viscosity", "load")
     assert tied.exponents == pytest.approx((1, 1, 1))
     assert "modulus / viscosity and modulus / load" in tied.message
+    said = [*found.notes, *(each.message for each in found.undetermined)]
+    for pair in itertools.combinations(tied.names, 2):
+        assert sum(all(name in sentence for name in pair) for sentence in said) == 1
 
 
 def test_an_input_that_the_abscissa_holds_is_refused():

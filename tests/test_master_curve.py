@@ -41,12 +41,12 @@ def curves(seed, factors=(1, 1, 1), wrong_viscosity=1.0, error=None, rows=12, lo
 
 
 def test_curves_that_are_one_are_said_to_be_and_lie_beside_each_other_within_their_errors():
-    found = [sb.master_curve(curves(seed, error=NOISE if seed % 2 else None), TRUE)["speed_viscosity"] for seed in range(14)]
-    assert sum(each.is_one for each in found) >= 12
+    found = [sb.master_curve(curves(seed, error=NOISE if seed % 2 else None), TRUE)["speed_viscosity"] for seed in range(8)]
+    assert sum(each.is_one for each in found) >= 7
     assert np.mean([each.ratio for each in found]) == pytest.approx(1.0, abs=0.15)
     offsets = [offset for each in found for offset in each.offsets]
     inside = [abs(np.log1p(each.offset)) < 2.1 * each.offset_error for each in offsets]
-    assert len(inside) == 42 and sum(inside) >= 37
+    assert len(inside) == 24 and sum(inside) >= 21
     assert np.mean([each.noise for each in found[::2]]) == pytest.approx(NOISE, rel=0.15)
 
 

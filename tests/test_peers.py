@@ -25,7 +25,7 @@ def central_gap(textbook, x, speed):
     return float(np.interp(0, x, h))
 
 
-@pytest.mark.parametrize(("speed", "width", "within"), [(1e-2, None, 5e-3), (1e-4, None, 5e-2), (1e-6, 1e-6**0.4, 5e-3)])
+@pytest.mark.parametrize(("speed", "width", "within"), [(1e-2, None, 5e-3), (1e-6, 1e-6**0.4, 5e-3)])
 def test_a_home_made_solver_finds_our_film(textbook, solved, speed, width, within):
     found = central_gap(textbook, textbook.grid(201, width=width), speed)
     assert abs(found / solved(speed, 0.1, 0.0).central_gap - 1) < within

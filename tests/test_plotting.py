@@ -279,7 +279,7 @@ def boxes_of(figure):
 
 
 def test_texts_lie_inside_the_picture_and_apart_from_one_another(subtests, heavy):
-    for kind in ("over speed", "over load", "of groups", "without any friction", "beyond the law"):
+    for kind in ("over speed", "of groups", "without any friction", "beyond the law"):
         with subtests.test(kind=kind):
             figure = picture(heavy if kind == "beyond the law" else curve_of_kind(kind), title="A title")
             whole, boxes = figure.bbox, boxes_of(figure)

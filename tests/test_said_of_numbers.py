@@ -1,6 +1,5 @@
 """What is said beside numbers: notes with the coefficients that were given, what an interval counts, and what was searched."""
 
-import itertools
 import re
 
 import pytest
@@ -94,12 +93,3 @@ def test_what_is_free_is_a_list_of_inputs(free):
     data, case = EXAMPLES / "pdms_measured.csv", EXAMPLES / "pdms_fit.toml"
     with pytest.raises(sb.InputError, match="free = .* must be a list of inputs"):
         sb.fit(data, case, free=free, intervals=False)
-
-
-def test_inputs_that_data_cannot_tell_apart_are_named_together_once():
-    data, case = EXAMPLES / "pdms_measured.csv", EXAMPLES / "pdms_fit.toml"
-    found = sb.fit(data, case, free=["viscosity", "modulus", "load"], intervals=False)  # the case knows the modulus a little
-    assert [set(each.names) for each in found.undetermined] == [{"viscosity factor", "modulus", "load"}]
-    said = [*found.notes, *(each.message for each in found.undetermined)]
-    for pair in itertools.combinations(found.undetermined[0].names, 2):
-        assert sum(all(name in sentence for name in pair) for sentence in said) == 1

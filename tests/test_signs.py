@@ -39,7 +39,7 @@ def thick():
 
 
 def test_a_drop_in_a_thick_film_drags_as_the_film_up_to_its_edge(subtests, thick):
-    for radii in [1.5, 4.0, 7.0, 14.0, 40.0, 200.0]:
+    for radii in [1.5, 7.0, 200.0]:
         with subtests.test(radii=radii):
             contact = sb.PointContact(**THICK)
             drop = sb.solve(contact.replace(wetted_radius=radii * contact.hertz.half_width), rtol=1e-3)
@@ -62,7 +62,7 @@ def test_a_drop_has_one_friction_however_one_asks():
 
 
 def test_friction_of_the_atlas_is_positive_and_grows_with_the_drop(subtests):
-    for speed in [1e-3, 1.0, 10.0, 100.0]:
+    for speed in [1e-3, 100.0]:
         for radii in [1.1, 1.5, 2.0, 4.9, 5.0, 6.0, 12.0, 30.0]:
             with subtests.test(speed=speed, radii=radii):
                 groups = sb.Groups(speed, 0.1, 1e-3, geometry="point")

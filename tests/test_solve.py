@@ -266,19 +266,22 @@ def test_friction_adds_contact_and_viscous_parts(solved):
     assert s.friction() == s.friction(boundary_friction=1.0, beta=1.0, definition="balanced")
 
 
+CONTACT = sb.LineContact(
+    radius="10 mm",
+    modulus="2.7 MPa",
+    load="50 N/m",
+    viscosity="0.1 Pa*s",
+    speed="10 mm/s",
+    roughness="1 um",
+    alpha=2.0,
+    beta=0.05,
+    boundary_friction=0.8,
+)
+
+
 @pytest.mark.quick
 def test_a_contact_brings_its_own_coefficients_and_scales():
-    contact = sb.LineContact(
-        radius="10 mm",
-        modulus="2.7 MPa",
-        load="50 N/m",
-        viscosity="0.1 Pa*s",
-        speed="10 mm/s",
-        roughness="1 um",
-        alpha=2.0,
-        beta=0.05,
-        boundary_friction=0.8,
-    )
+    contact = CONTACT
     s, plain = sb.solve(contact), sb.solve(contact.groups)
     assert s.contact is contact
     assert s.groups == contact.groups
@@ -305,17 +308,7 @@ def test_groups_alone_have_no_si_scales(solved):
 
 
 def test_lambda_ratio_is_the_minimum_film_over_the_rms_height_and_knows_alpha(solved):
-    contact = sb.LineContact(
-        radius=0.01,
-        modulus=2.7e6,
-        load=10.0,
-        viscosity=0.1,
-        speed=0.01,
-        roughness=1e-6,
-        alpha=1.9,
-        beta=0.05,
-        boundary_friction=0.8,
-    )
+    contact = CONTACT.replace(load=10.0, alpha=1.9)
     state = sb.solve(contact)
     film = state.minimum_gap * contact.hertz.indentation
     assert solved(1e-2, 0.1, 0.0).lambda_ratio == solved(1e-2, 0.1, 0.0).central_separation == math.inf
@@ -337,36 +330,19 @@ def test_thin_films_between_rough_surfaces_are_noted():
 
 
 def test_contacts_too_wide_for_a_half_space_are_noted(subtests):
-    for modulus, wide in [(2.7e6, False), (4.5e4, False), (4e4, True), (70.0, True)]:
+    for modulus, wide in [(4.5e4, False), (4e4, True)]:
         with subtests.test(modulus=modulus, wide=wide):
-            contact = sb.LineContact(
-                radius=0.01,
-                modulus=modulus,
-                load=30.0,
-                viscosity=0.1,
-                speed=1.0,
-                roughness=0.0,
-                alpha=2.0,
-                beta=0.05,
-                boundary_friction=0.8,
-            )
+            contact = CONTACT.replace(modulus=modulus, load=30.0, speed=1.0, roughness=0.0)
             slope = 2 * contact.beta * float(contact.groups.load) ** 0.5
             assert (slope > 0.3) == wide
             notes = sb.solve(contact, rtol=1e-4).notes
-            assert (
-                any(
-                    note.startswith(f"The contact is wide: the Hertz half-width is {slope:.2g} of the radius.")
-                    for note in notes
-                )
-                == wide
-            )
+            said = f"The contact is wide: the Hertz half-width is {slope:.2g} of the radius."
+            assert any(note.startswith(said) for note in notes) == wide
 
 
 def test_the_gap_is_judged_in_roughness_heights_of_the_surface():
     """alpha counts: the law's length is h_rms/alpha."""
-    common = {"radius": 0.01, "modulus": 2.7e6, "load": 10.0, "viscosity": 0.1, "speed": 0.0}
-    common |= {"beta": 0.05, "boundary_friction": 0.8}
-    contacts = (sb.LineContact(roughness=alpha * 1e-6, alpha=alpha, **common) for alpha in (1.0, 6.0))
+    contacts = (CONTACT.replace(load=10.0, speed=0.0, roughness=alpha * 1e-6, alpha=alpha) for alpha in (1.0, 6.0))
     low, high = (sb.solve(contact, rtol=1e-4) for contact in contacts)
     assert low.central_gap == pytest.approx(high.central_gap, rel=1e-9)
     assert low.notes == ()
@@ -390,42 +366,20 @@ GROUPS = sb.Groups(1e-2, 0.1, 1e-4)
 
 
 @pytest.mark.quick
-def test_a_tolerance_out_of_range_is_refused_in_a_sentence(subtests):
-    for rtol in [1e-13, 0.1, 0.0, -1e-6, math.nan, True, "1e-6", None, 1e-6 + 0j]:
-        with subtests.test(rtol=rtol):
-            with pytest.raises(sb.InputError, match=r"rtol = .*from 1e-11.* to 0.01"):
-                sb.solve(GROUPS, rtol=rtol)
-
-
-@pytest.mark.quick
-def test_a_problem_of_another_kind_is_refused(subtests):
-    for problem in [0.1, "case.toml", (1e-2, 0.1, 1e-4), None]:
-        with subtests.test(problem=problem):
-            with pytest.raises(sb.InputError, match="must be a LineContact, PointContact or Groups"):
-                sb.solve(problem)
-
-
-def test_arrays_of_groups_are_refused():
-    with pytest.raises(sb.InputError, match=r"shape \(2,\).*stribeck_curve"):
-        sb.solve(sb.Groups(np.array([1e-2, 1e-3]), 0.1, 1e-4))
-
-
-def test_friction_refuses_what_it_does_not_know(subtests, solved):
-    for arguments, message in [
-        ({"boundary_friction": -0.1}, "boundary_friction = -0.1"),
-        ({"beta": 0.0}, "beta = 0"),
-        ({"definition": "both"}, "'balanced' or 'published'"),
-    ]:
-        with subtests.test(arguments=arguments, message=message):
-            with pytest.raises(sb.InputError, match=message):
-                solved(*TYPICAL["mixed"]).friction(**arguments)
-
-
-def test_positions_must_be_finite_and_in_one_dimension(subtests, solved):
-    for x in [[0.0, math.nan], [math.inf], [[0.0, 1.0]]]:
-        with subtests.test(x=x):
-            with pytest.raises(sb.InputError, match="positions must be finite"):
-                solved(*TYPICAL["mixed"]).profile(x)
+def test_what_cannot_be_solved_or_asked_of_a_state_is_refused_in_a_sentence(subtests, solved):
+    state, kind = solved(*TYPICAL["mixed"]), "must be a LineContact, PointContact or Groups"
+    tolerances = [1e-13, 0.1, -1e-6, math.nan, True, "1e-6", None, 1e-6 + 0j]
+    for words, ask, *given in (
+        *((r"rtol = .*from 1e-11.* to 0.01", lambda rtol: sb.solve(GROUPS, rtol=rtol), each) for each in tolerances),
+        *((kind, sb.solve, each) for each in (0.1, "case.toml", (1e-2, 0.1, 1e-4), None)),
+        (r"shape \(2,\).*stribeck_curve", sb.solve, sb.Groups(np.array([1e-2, 1e-3]), 0.1, 1e-4)),
+        ("boundary_friction = -0.1", state.friction, -0.1),
+        ("beta = 0", state.friction, 1.0, 0.0),
+        ("'balanced' or 'published'", state.friction, 1.0, 1.0, "both"),
+        *(("positions must be finite", state.profile, each) for each in ([0.0, math.nan], [math.inf], [[0.0, 1.0]])),
+    ):
+        with subtests.test(words=words, given=given), pytest.raises(sb.InputError, match=words):
+            ask(*given)
 
 
 # Failures

@@ -367,9 +367,3 @@ def test_a_missing_extra_is_one_sentence_with_the_remedy(curve, tmp_path, monkey
             with pytest.raises(ImportError, match=rf"needs {library}; install it with: pip install 'stribeck\[data\]'\.") as e:
                 ask()
         assert isinstance(e.value, MissingExtraError) and isinstance(e.value, sb.InputError)
-
-
-def test_importing_the_module_does_not_import_xarray():
-    heavy = '{"xarray", "netCDF4", "matplotlib", "pandas"}'
-    code = f"import sys, stribeck.files.datasets, stribeck.plot.curve; assert not {heavy} & set(sys.modules)"
-    assert run_python(code).code == 0

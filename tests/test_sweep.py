@@ -137,7 +137,7 @@ def test_an_error_of_the_program_is_an_outcome_with_its_words(tmp_path, monkeypa
 
 
 def test_a_state_that_rounding_bounds_keeps_its_value_with_its_error(tmp_path):
-    text = "[groups]\nload = 0.1\nroughness = 1e-9\n[vary]\nspeed = [1e-10, 1e-11]\n[solver]\nrtol = 1e-11\n"
+    text = "[groups]\nload = 0.1\nroughness = 1e-9\n[vary]\nspeed = [1e-11]\n[solver]\nrtol = 1e-11\n"
     found = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset(grid=False)
     bounded = found.outcome.values == "ROUNDING"
     assert bounded.any()

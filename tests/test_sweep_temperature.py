@@ -12,7 +12,7 @@ CONTACT = (
     '[contact]\nradius = "10 mm"\nmodulus = "2.7 MPa"\nroughness = "1 um"\nalpha = 2.0\nbeta = 0.06\nboundary_friction = 0.7\n'
 )
 OIL = '[fluid]\npreset = "iso-vg"\ngrade = 46\n'
-VARY = '[vary]\nspeed = { range = ["1 mm/s", "10 mm/s"], points = 5 }\nload = ["15 N/m", "22 N/m", "30 N/m", "45 N/m"]\n'
+VARY = '[vary]\nspeed = { range = ["1 mm/s", "10 mm/s"], points = 4 }\nload = ["15 N/m", "22 N/m", "30 N/m", "45 N/m"]\n'
 
 
 def sweep_file(folder, vary='temperature = ["20 degC", "313.15 K", 60, 80]', fluid=OIL, contact=CONTACT):
@@ -38,7 +38,7 @@ def test_each_state_is_solved_with_the_liquid_at_its_temperature(tmp_path):
 
 
 def test_the_table_as_csv_interpolates_between_its_temperatures(tmp_path):
-    vary = 'temperature = { range = ["20 degC", "80 degC"], points = 7 }'
+    vary = 'temperature = { range = ["20 degC", "80 degC"], points = 5 }'
     found = sb.sweep(sweep_file(tmp_path, vary), tmp_path / "s.sqlite")
     found.to_csv(tmp_path / "table.csv")
     with (tmp_path / "table.csv").open(encoding="utf-8") as file:
