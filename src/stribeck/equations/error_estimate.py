@@ -23,7 +23,7 @@ import numpy as np
 from stribeck._types import Array, Flags
 from stribeck.equations.drag import FilmOnMesh, viscous_friction
 from stribeck.equations.enriched import EnrichedOperators, FineOperators
-from stribeck.equations.film import is_rough, is_thinning, jump_of
+from stribeck.equations.film import is_thinning, jump_of
 from stribeck.equations.line import LOAD, Equations, Fields
 from stribeck.equations.observables import (
     DRAG_ROWS,
@@ -129,18 +129,7 @@ def perturbations(state: State, observed: Array, fine: FineOperators) -> Perturb
     slopes = equations.gradient(film, known)
     if flat.any():
         smooth = state.equations.gradient(film, u)
-        if clip is not None:
-            smooth = clip(slopes, smooth)
-        elif not is_rough(film):
-            smooth = coarse.to_order(smooth, mesh.order)
-        else:  # what conducts is no such difference, and may turn sharply
-            by_flux = Trace.number("flux_gap", u.flux_gap)
-            conducted, finer_conducted = (
-                each.gradient(film, at_nodes._replace(flux_gap=by_flux)).columns["flux_gap"]
-                for each, at_nodes in ((state.equations, u), (equations, known))
-            )
-            missing = np.divide(smooth, conducted, out=np.zeros_like(smooth), where=conducted != 0)
-            smooth = coarse.to_order(missing, mesh.order) * finer_conducted
+        smooth = coarse.to_order(smooth, mesh.order) if clip is None else clip(slopes, smooth)
         slopes = np.where(np.repeat(flat, mesh.order), smooth, slopes)
     jump = jump_of(film)
     jumps = None if jump is None else jump(gap, fluid)
