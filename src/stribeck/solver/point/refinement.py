@@ -136,10 +136,6 @@ def first_mesh(
     if rigid_height(speed) > 1.0 and model.cavitation is Cavitation.EXIT:
         mesh = operators_of(wanted).mesh
         start = guess_from_rigid_ball(mesh, speed)
-    if guess.resolution.model.film != model.film:  # the film ruptures first, then the fluid changes
-        plain = replace(wanted.coarser(), model=replace(model, film=guess.resolution.model.film))
-        first = solve_level(plain, speed, law, start, mesh, newton_tolerance(rtol))
-        start, mesh = (first.unknowns, first.mesh) if first.outcome.ok else (start, mesh)
     return wanted, start, mesh
 
 

@@ -2,12 +2,12 @@
 
 A dry contact in which a cushion, as thick as the film, helps the asperities has about the shape of the lubricated one, and
 the pressure of the cushion is the first guess of the film pressure.  So elastic shape and load hold from the beginning.
-If Newton's iteration does not converge from there, the film is guessed thicker, then comes from that of a Newtonian fluid.
+If Newton's iteration does not converge from there, the film comes from that of a Newtonian fluid.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -29,7 +29,7 @@ from stribeck.equations.point.mesh_choice import (
 from stribeck.equations.point.system import Unknowns
 from stribeck.fluids.blend import blend
 from stribeck.numerics.continuation import Steps, extrapolation_weights
-from stribeck.numerics.settings import COARSE_RTOL, LEAST_DEGREE, LEAST_MODES, NEGLIGIBLE, SAFETY
+from stribeck.numerics.settings import COARSE_RTOL, LEAST_DEGREE, LEAST_MODES, NEGLIGIBLE
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import Level, extrapolate_levels, solve_level
 
@@ -68,9 +68,9 @@ class WithCushion:
         return np.logaddexp(self.law.log_pressure(gap), (self.film - gap) / self.own_decay)
 
 
-def first_guess(found: Resolution, speed: float, law: ContactLaw, thickness_ratio: float = 1.0) -> Unknowns | None:
+def first_guess(found: Resolution, speed: float, law: ContactLaw) -> Unknowns | None:
     """Return the first guess on a mesh; None if the dry contact fails."""
-    cushioned = WithCushion(law, thickness_ratio * film_scale(film_speed(speed, found.model)))
+    cushioned = WithCushion(law, film_scale(film_speed(speed, found.model)))
     dry = dry_contact(operators_of(found), cushioned, TOLERANCE)
     if not dry.outcome.ok or not dry.gap.min() > 0:
         return None
@@ -82,30 +82,23 @@ def first_state(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> Lev
     """Return a coarse state at a speed, or the outcome of the failure."""
     if is_too_thin(speed, law):
         return Outcome.MESH_LIMIT
-    last: Outcome = Outcome.STALLED
-    for path in (_direct, _from_newtonian):
-        try:
-            for level in path(speed, law, model):
-                if level.outcome.ok:
-                    return level
-                last = level.outcome
-        except MeshTooLargeError as problem:
-            return problem.outcome
-    return last
-
-
-def _direct(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
-    for thickness_ratio in (1.0, SAFETY):
+    try:
         found = resolution(speed, law, LEAST_DEGREE, LEAST_MODES, model)
-        guess = first_guess(found, speed, law, thickness_ratio)
-        if guess is not None:
-            yield solve_level(found, speed, law, guess, operators_of(found).mesh, TOLERANCE)
+        guess = first_guess(found, speed, law)
+        level = None if guess is None else solve_level(found, speed, law, guess, operators_of(found).mesh, TOLERANCE)
+        if level is None or not level.outcome.ok:
+            level = _from_newtonian(speed, law, model) or level
+    except MeshTooLargeError as problem:
+        return problem.outcome
+    if level is None:
+        return Outcome.STALLED
+    return level if level.outcome.ok else level.outcome
 
 
-def _from_newtonian(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
-    """Yield the state at the end of the path from a Newtonian fluid between smooth walls to the film of the model."""
+def _from_newtonian(speed: float, law: ContactLaw, model: Model) -> Level | None:
+    """Return the state at the end of the path from a Newtonian fluid between smooth walls to the film of the model."""
     if model.film == BASE_MODEL.film:
-        return
+        return None
     here = resolution(speed, law, LEAST_DEGREE, LEAST_MODES, model)
 
     def correct(part: float, history: Sequence[tuple[float, Level]]) -> Level | None:
@@ -119,6 +112,7 @@ def _from_newtonian(speed: float, law: ContactLaw, model: Model) -> Iterator[Lev
         return solve_level(on, speed, law, guess, mesh, TOLERANCE)
 
     found = Steps(correct).to(1.0, 0.0)
-    if found.outcome.ok:
-        last = found.states[-1]
-        yield replace(last, resolution=replace(last.resolution, model=model))
+    if not found.outcome.ok:
+        return None
+    last = found.states[-1]
+    return replace(last, resolution=replace(last.resolution, model=model))
