@@ -1,6 +1,7 @@
 """The making of figures: which are meant, what is written, kept, solved again and refused, and that each can be read."""
 
 import dataclasses
+import json
 import os
 import re
 import shutil
@@ -33,6 +34,10 @@ PANELS = {
     "S1": "abc",
 }
 """Panels of the paper that hold results of its own model."""
+
+
+FINDINGS = json.loads((Path(__file__).parent / "data" / "findings.json").read_text(encoding="utf-8"))
+NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?!\w)")
 
 
 def opened(path):
@@ -95,6 +100,23 @@ def test_the_data_of_each_figure_are_described_and_converged(name):
         if variable.dtype.kind == "f":
             assert not np.isinf(variable.values).any()
             assert np.isfinite(variable.values).any()
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name in {"3", "9", "11"})) for name in FIGURES]
+)
+def test_the_numbers_in_what_a_figure_finds_are_those_that_were_read_and_checked(name):
+    wanted, found = (NUMBER.findall(text) for text in (FINDINGS[name], data_of(name).attrs["finding"]))
+    assert len(found) == len(wanted)
+    # A number on the edge of two roundings may take either.
+    for here, there in zip(found, wanted, strict=True):
+        assert abs(float(here) - float(there)) <= 1.01 * max(unit_of(here), unit_of(there)), (here, there)
+
+
+def unit_of(number):
+    """Return the unit of the last digit of a number in a text."""
+    digits, _, exponent = number.partition("e")
+    return 10.0 ** (int(exponent or 0) - len(digits.partition(".")[2]))
 
 
 @each_figure
