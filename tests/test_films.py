@@ -216,6 +216,21 @@ def test_films_of_the_effective_medium_are_those_of_an_independent_solver_with_i
             assert max(differences(solution, row).values()) < 1e-5
 
 
+def test_patir_and_chengs_factors_are_those_they_published(subtests):
+    """Their table of phi_x, and the two fits of phi_s that meet at H = 5."""
+    table = {1 / 9: (1.48, 0.42), 1 / 6: (1.38, 0.42), 1 / 3: (1.18, 0.42), 1: (0.90, 0.56)}
+    table |= {3: (0.225, 1.5), 6: (0.52, 1.5), 9: (0.87, 1.5)}
+    H = np.array([1.5, 4.0, 8.0])
+    for gamma, (C, r) in table.items():
+        with subtests.test(gamma=gamma):
+            factors = PatirCheng(2.0, gamma, 1.0, argument="mean")
+            flow = sb.solve(sb.Groups(0.1, 0.1, 0.01), flow_factors=factors, rtol=1e-3).groups.model.film.flow
+            wanted = 1 + C * H**-r if gamma > 1 else 1 - C * np.exp(-r * H)
+            np.testing.assert_allclose(flow.pressure(flow.sigma * H), wanted, rtol=1e-6)  # never below 1e-4
+            below, above = flow.shear(flow.sigma * np.array([5 - 1e-9, 5 + 1e-9]))
+            assert below == pytest.approx(above, rel=5e-3)
+
+
 @pytest.mark.slow
 def test_a_film_that_roughness_lifts_a_hundredfold_is_found():
     """A part of the roughness a thousand times smaller closes the flow already: by equal parts it was lost.  Half a minute."""

@@ -54,6 +54,14 @@ def test_the_viscosity_index_is_that_of_the_standards_examples():
 
 
 @pytest.mark.quick
+def test_thicker_oils_go_over_from_one_piece_of_the_standards_table_to_the_next_without_a_step():
+    at_40 = np.geomspace(12.0, 3200.0, 600)
+    for index in (0.0, 100.0):
+        at_100 = [sb.fluids.iso_vg(grade, 100, viscosity_index=index).viscosity for grade in at_40]
+        slopes = np.diff(np.log(at_100)) / np.diff(np.log(at_40))
+        assert 0.3 < slopes.min() and slopes.max() < 0.9
+
+
 def test_an_oil_that_no_sheet_has_is_refused(subtests):
     for name, call, sentence in (
         ("grade", lambda: sb.fluids.iso_vg(1e5), "must lie between 5 and 3200 cSt"),
