@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -403,3 +404,48 @@ def test_films_of_power_laws_grow_with_the_speed_as_the_inlet_says(subtests):
                 films.append(sb.solve(groups, fluid=fluid, cavitation="exit", rtol=1e-5).central_gap)
             lam = np.log10(10 * 10 ** (exponent - 1))  # of the speed at the viscosity of the film
             assert np.log10(films[1] / films[0]) / lam == pytest.approx(3 / (2 + 3 * exponent), rel=0.02)
+
+
+# --- a drag that nearly vanishes, as of rolling films on one wall ---
+
+LOOSE = 1e-4
+NEARLY = 1e-6
+
+
+def rolling(speed: float, slide_to_roll: float, cavitation: str) -> sb.Groups:
+    contact = {"radius": 1.0, "modulus": 1.0, "viscosity": 1.0, "alpha": 1.0, "beta": 1.0, "boundary_friction": 1.0}
+    groups = sb.Groups(speed, 0.1, 1e-3)
+    return sb.LineContact.from_groups(groups, **contact, slide_to_roll=slide_to_roll, cavitation=cavitation).groups
+
+
+@cache
+def exact(speed: float, slide_to_roll: float, cavitation: str):
+    return sb.solve(rolling(speed, slide_to_roll, cavitation), rtol=1e-10)
+
+
+def vanishing(speed: float, wall: str, cavitation: str) -> tuple[float, float]:
+    """Return a slide-to-roll ratio at which a Newtonian drag nearly vanishes, and the drag there.
+
+    The film of a given speed is the same at any ratio, so that the drag is linear in it.
+    """
+    low, high = (getattr(exact(speed, s, cavitation), wall) for s in (-1.0, 1.0))
+    slope = (high - low) / 2
+    return (NEARLY - 1) * (low + high) / (2 * slope), NEARLY * (low + high) / 2
+
+
+def test_the_stated_error_of_a_drag_that_nearly_vanishes_holds(subtests):
+    for wall in ["viscous_balanced", "viscous_upper"]:
+        for cavitation in ["none", "exit"]:
+            with subtests.test(wall=wall, cavitation=cavitation):
+                ratio, true = vanishing(1e-2, wall, cavitation)
+                groups = rolling(1e-2, ratio, cavitation)
+                curve = sb.stribeck_curve(groups, points=2, speed=(5e-3, 2e-2), rtol=LOOSE)
+                for found in (sb.solve(groups, rtol=LOOSE), curve.at(1e-2), curve.solve_at(1e-2)):
+                    assert abs(getattr(found, wall) - true) <= abs(true) * found.errors[wall]
+                state = sb.solve(groups, rtol=LOOSE)
+                assert state.error_estimate <= LOOSE
+                if wall == "viscous_balanced":
+                    friction = curve.at(1e-2)
+                    assert abs(friction.friction.fluid - true) <= friction.friction.error
+                    of_state = state.friction(boundary_friction=1e-9)  # the errors of asperities would hide that of the drag
+                    assert abs(of_state.fluid - true) <= of_state.error

@@ -193,3 +193,53 @@ def test_weights_of_groups_alone_are_said():
         "h_rms at alpha = 2" in note and f"{100 * dry / (dry + viscous):.2g} % of the friction, at boundary friction 1" in note
     )
     assert math.isfinite(solution.central_gap) and np.isfinite(dry)
+
+
+# --- suction that no film in the open bears ---
+
+ATMOSPHERE = 101_325.0
+
+
+def noted_suction(solution):
+    return [note for note in solution.notes if "cavitate" in note]
+
+
+def suction(solution):
+    """Return how far the fluid pressure falls below the ambient, between the nodes too [Pa]."""
+    found = solution.profile(np.linspace(-3.0, 3.0, 20_001)).fluid_pressure.min()
+    return -float(found) * solution.contact.hertz.pressure
+
+
+@pytest.mark.quick
+def test_suction_above_an_atmosphere_is_noted_with_its_value(subtests):
+    """All pressures are multiplied by one factor, so that the groups stay and the suction in Pa alone changes."""
+    for atmospheres, notes in [(0.95, 0), (1.05, 1), (30.0, 1)]:
+        with subtests.test(atmospheres=atmospheres, notes=notes):
+            contact = sb.load_case(PDMS).contact.replace(speed="0.1 m/s")
+            factor = atmospheres * ATMOSPHERE / suction(sb.solve(contact))
+            names = ("modulus", "load", "viscosity")
+            scaled = contact.replace(**{name: factor * getattr(contact, name) for name in names})
+            assert scaled.groups.speed == pytest.approx(contact.groups.speed)
+            for solution in (sb.solve(scaled), sb.solve(scaled, rtol=1e-5)):
+                found = noted_suction(solution)
+                assert len(found) == notes
+                assert all(f"falls {atmospheres * ATMOSPHERE / 1e6:.3g} MPa below the ambient" in note for note in found)
+            assert noted_suction(sb.solve(scaled.replace(speed=0.0))) == []
+            assert noted_suction(sb.solve(scaled.groups)) == []
+
+
+@pytest.mark.quick
+def test_a_curve_tells_once_from_where_on_the_suction_is_too_much():
+    curve = sb.stribeck_curve(SEAL, speed=("1 mm/s", "1 m/s"), points=9, rtol=1e-4)
+    [note] = [note for note in curve.notes if "cavitate" in note]
+    count = sum(suction(solution) > ATMOSPHERE for solution in curve.solutions)
+    assert 0 < count < 9 and f"({count} of 9 points, speed" in note
+
+
+@pytest.mark.quick
+def test_the_command_prints_the_suction(capsys, tmp_path):
+    full, seal = tmp_path / "full.toml", EXAMPLES / "rod_seal.toml"
+    full.write_text(seal.read_text().replace('model = "exit"', 'model = "none"'))
+    assert "Note: Behind the contact the fluid pressure falls 0.14" in call(capsys, "solve", full, "-v").out
+    assert "cavitate" not in call(capsys, "solve", seal).out
+    assert "cavitate" not in call(capsys, "solve", PDMS).out
