@@ -13,7 +13,6 @@ NOTHING = dict.fromkeys(("alpha", "beta", "roughness"))
 SURFACE = {"h_rms": '"1 um"', "hurst": "0.8", "longest_wavelength": '"100 um"', "shortest_wavelength": '"1 um"'}
 WAVENUMBER = np.geomspace(6e4, 6e6, 30)
 DENSITY = 1e-22 * (WAVENUMBER / 6e4) ** -3.6
-SPECTRUM = {"wavenumber": WAVENUMBER.tolist(), "density": DENSITY.tolist()}
 ASPERITIES = {"density": '"3e9 m^-2"', "radius": '"60 um"', "deviation": '"1 um"'}
 SEPARATION = np.linspace(0.05, 12, 60)
 
@@ -24,7 +23,7 @@ CASES = {
         PERSSON | {"ra": '"0.8 um"'},
         {"surface": {key: value for key, value in SURFACE.items() if key != "h_rms"}},
     ),
-    "Persson, spectrum": (PERSSON, {"surface": SPECTRUM}),
+    "Persson, spectrum": (PERSSON, {"surface": {"spectrum": '"spectrum.csv"'}}),
     "Persson, shape alone": ({"law": '"persson"'}, {"surface": SURFACE | {"shape_only": "true"}}),
     "Greenwood-Williamson, asperities": (NOTHING | {"law": '"greenwood-williamson"'}, {"asperities": ASPERITIES}),
     "table": ({"law": '"table"'}, {"table": {"file": '"law.csv"'}}),
@@ -55,6 +54,8 @@ def written(folder, contact, tables):
     gaps, pressures = SEPARATION * 0.5e-6, 2.7e6 * 0.06 * np.exp(-SEPARATION - 0.01 * SEPARATION**2)
     rows = "\n".join(f"{gap},{pressure}" for gap, pressure in zip(gaps, pressures, strict=True))
     (folder / "law.csv").write_text(f"gap [m],pressure [Pa]\n{rows}\n")
+    rows = "\n".join(f"{q},{density}" for q, density in zip(WAVENUMBER, DENSITY, strict=True))
+    (folder / "spectrum.csv").write_text(f"wavenumber [1/m],density [m^4]\n{rows}\n")
     case = folder / "case.toml"
     case.write_text(case_text(contact, **tables))
     contact = sb.load_case(case).contact
