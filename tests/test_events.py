@@ -56,7 +56,9 @@ def test_many_zeros_are_located_at_once_between_their_last_ends(subtests):
 
 def test_a_curve_off_the_atlas_offers_what_a_solved_one_does():
     contact = sb.load_case("examples/pdms_cylinder.toml").contact
-    read, solved = (sb.stribeck_curve(contact, speed=("0.1 mm/s", "0.1 m/s"), method=each) for each in ("atlas", "solver"))
+    read, solved = (
+        sb.stribeck_curve(contact, speed=("0.1 mm/s", "0.1 m/s"), points=5, method=each) for each in ("atlas", "solver")
+    )
     for mark, other in zip(read.transitions, solved.transitions, strict=True):
         assert mark.name == other.name and abs(math.log(mark.value / other.value)) <= mark.error + other.error < 1e-3
     speeds = np.geomspace(2e-4, 5e-2, 5)

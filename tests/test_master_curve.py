@@ -47,6 +47,7 @@ def test_curves_that_are_one_are_said_to_be_and_lie_beside_each_other_within_the
     offsets = [offset for each in found for offset in each.offsets]
     inside = [abs(np.log1p(each.offset)) < 2.1 * each.offset_error for each in offsets]
     assert len(inside) == 24 and sum(inside) >= 21
+    assert sum(offset.is_far for offset in offsets) <= 2
     assert np.mean([each.noise for each in found[::2]]) == pytest.approx(NOISE, rel=0.15)
 
 

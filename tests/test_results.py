@@ -229,13 +229,14 @@ def test_what_is_measured_or_checked_shows_itself_in_a_screen():
     surface = sb.surfaces.analyse(sb.surfaces.read_topography(EXAMPLES / "cylinder_profile.csv"))
     measured = sb.read_measurements(EXAMPLES / "pdms_measured.csv")
     profile, spread = sb.solve(CONTACT).profile(np.linspace(-3, 3, 500)), sb.propagate(CONTACT, {"roughness": 0.1})
-    for each in (surface, surface.measured, measured, sb.check(CONTACT), profile, spread):
+    checks = sb.check(CONTACT)
+    for each in (surface, surface.measured, measured, checks, profile, spread):
         assert len(repr(each).splitlines()) < 25 and len(repr(each)) < 2500 and "<table" in each._repr_html_()
     assert "friction: 42 values, 0." in repr(measured) and "wavenumber: " in repr(surface.measured)
     ax = pytest.importorskip("matplotlib.figure").Figure().subplots()
     surface.plot(ax=ax)
     assert ax.lines and "height" in ax.get_ylabel()
-    assert sb.check(CONTACT)["shear rate"].texts[1] != "inf 1/s"
+    assert checks["shear rate"].texts[1] != "inf 1/s"
 
 
 def table(path):
