@@ -33,7 +33,7 @@ def first_line(capsys, path):
 
 DEAR = (
     *("contact_lens", "nitrile_seal", "pdms_ball", "pdms_fit", "rod_seal", "rubber_ball", "tongue_model"),
-    *("wiper_blade", "worn_rod_seal"),
+    *("wiper_blade", "wiper_edge", "worn_rod_seal"),
 )
 """Balls, and contacts whose curves take seconds and whose shape, law or film another one has."""
 
