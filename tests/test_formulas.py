@@ -24,9 +24,8 @@ from stribeck.asymptotics import FORMULAS, Formula, OutOfRangeWarning
 from stribeck.asymptotics import formula as formulas
 
 SEED = 60913
-STATES = 3
-LANDMARK_STATES = 2
-"""States in range at which a formula is judged; few for what needs a whole curve over the speed."""
+STATES = 2
+"""States in range at which a formula is judged, the second at ends of it."""
 
 SPAN = {"speed": (1e-10, 1e8), "load": (1e-8, 0.9), "relative_roughness": (1e-6, 1e3)}
 DEFAULT = {"speed": (1e-9, 1e4), "load": (1e-4, 0.7), "relative_roughness": (1e-4, 1e-1)}
@@ -87,10 +86,9 @@ def states(formula):
     """Return random states in the range of a formula, the same for formulas of the same range."""
     many = drawn()
     inside = np.nonzero(formula.valid(many) & in_box(formula, many))[0]
-    wanted = LANDMARK_STATES if formula.predicts.startswith(("speed_at", "friction_at", "separation_at")) else STATES
-    assert len(inside) >= wanted, "no states in range: widen SPAN"
+    assert len(inside) >= STATES, "no states in range: widen SPAN"
     found = []
-    for i in inside[:wanted]:
+    for i in inside[:STATES]:
         one = sb.Groups(*(float(getattr(many, name)[i]) for name in ("speed", "load", "roughness")))
         one = at_the_ends(formula, one) if len(found) % 2 else one
         # What is solved does not depend on these; so that formulas share states.
@@ -408,14 +406,14 @@ def test_a_formula_takes_arrays_that_broadcast_and_gives_what_it_gives_for_their
 
 
 def check_arrays(formula):
-    """Check the values of a formula for arrays of three states against those for each state."""
-    some = states(formula)[:3]
+    """Check the values of a formula for arrays of states against those for each state."""
+    some = states(formula)
     ends = formula.interval(some[0]) if formula.interval else ()
-    x = (np.mean(ends) + np.array([-0.1, 0.0, 0.1]) * np.ptp(ends),) if ends else ()
+    x = (np.mean(ends) + np.array([-0.1, 0.1]) * np.ptp(ends),) if ends else ()
     one_by_one = [formula.function(groups, *(each[i] for each in x)) for i, groups in enumerate(some)]
     speed, load, roughness = (np.array([getattr(groups, name) for groups in some]) for name in ("speed", "load", "roughness"))
     together = formula.function(sb.Groups(speed, load, roughness), *x)
     np.testing.assert_allclose(together, one_by_one, rtol=1e-8, err_msg=formula.name)
     grid = formula.function(sb.Groups(speed[:, None], load[0], roughness[0]), *arguments(formula, some[0]))
     first = formula.function(some[0], *arguments(formula, some[0]))
-    np.testing.assert_allclose(np.broadcast_to(grid, (3, 1))[0, 0], first, rtol=1e-8, err_msg=formula.name)
+    np.testing.assert_allclose(np.broadcast_to(grid, (len(some), 1))[0, 0], first, rtol=1e-8, err_msg=formula.name)
