@@ -113,10 +113,10 @@ def test_what_a_small_change_of_a_state_does_to_its_observables_is_their_differe
         gap = size * rng.normal() / (1 + ((x - centre) / width) ** 2)
         change = np.concatenate([gap, [rng.normal(), s.flux_gap * rng.normal()]])
         up, down = (observables(equations, y + step * change, load) for step in (1e-5, -1e-5))
-        found = changes(equations, y, load, change)
+        found = changes(equations, y, load, s.minimum_position, change)
         for each in s.errors:
             difference = (getattr(up, each) - getattr(down, each)) / 2e-5
-            scale = np.abs(changes(equations, y, load, np.diag(change))[:, ROW[each]]).sum()
+            scale = np.abs(changes(equations, y, load, s.minimum_position, np.diag(change))[:, ROW[each]]).sum()
             # The minimum gap answers at the node next to it.
             allowed = 2e-2 if each == "minimum_gap" else 1e-5
             assert abs(found[ROW[each]] - difference) <= allowed * scale + 1e-13, each
