@@ -61,6 +61,16 @@ def test_a_heavy_ball_whose_torn_nodes_settle_slowly_is_solved_from_cold():
     assert ball(1.29283e-4, 8.91201e-3, 1e-4, 0.360854).outcome.ok
 
 
+def test_a_line_of_rupture_that_begins_far_upstream_heals(subtests):
+    """One node a step would take more steps than Newton's iteration may."""
+    for groups, fluid in (
+        ((0.0002111655536204129, 0.000301314928992415, 2.2621139902298936e-05), sb.fluids.Carreau(3.3704, 0.47137, 0.01)),
+        ((2.5070113458342553e-05, 0.00027129780258489317, 4.119031803444864e-06), sb.fluids.Barus(2.0)),
+    ):
+        with subtests.test(fluid=fluid):
+            assert sb.solve(Groups(*groups, geometry="point"), fluid=fluid, cavitation="exit", rtol=1e-3).outcome.ok
+
+
 @pytest.mark.parametrize(
     ("speed", "load", "parts"),
     [
