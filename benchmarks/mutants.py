@@ -112,7 +112,12 @@ def faults_of(path: Path) -> Iterator[Fault]:
             test = node.test
             part = rows[test.lineno - 1][test.col_offset : test.end_col_offset].decode()
             yield Fault(path, test.lineno, test.col_offset, test.end_col_offset or 0, f"(not ({part}))")
-        elif isinstance(node, ast.Return) and node.value is not None and node.lineno == node.end_lineno:
+        elif (
+            isinstance(node, ast.Return)
+            and node.lineno == node.end_lineno
+            and ast.unparse(node) not in ("return", "return None")
+        ):
+            assert node.value is not None
             yield Fault(path, node.lineno, node.value.col_offset, node.value.end_col_offset or 0, "None")
 
 
