@@ -101,6 +101,9 @@ def mesh_for(
         pressure_scale = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
     highest = highest_degree(order)
     thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
+    sheared = 0.0
+    if closed_at is not None and tolerance < COARSE_RTOL and isinstance(guess, State) and float(guess.gap.min()) < closed_at:
+        sheared = float(guess.mesh.weights @ (1 / guess.gap))
 
     def asked(lengths: Array) -> Array:
         """Return a field that panels resolve if they are not longer than allowed: ``lengths`` over that."""
@@ -142,6 +145,12 @@ def mesh_for(
             wrong = groups.speed * half_widths * jumps.reshape(x.shape)[:, :-1].max(axis=1) / x.shape[1]
             wrong /= np.fmax(np.abs(fluid).max(), 1e-300)
             fields.append(asked(wrong / error))
+        # Beside the place where the last path closes no load feels the gradient, but drag does.
+        if sheared and stretch[0, 0] == 1.0:
+            full = (flat < 0) | (flat > reformation) if ends else np.ones_like(flat, dtype=bool)
+            pressure = fluid if film.uses_pressure else None
+            stress = gap * film.at(groups.speed).gradient(gap, pressure, np.array(guess.flux_gap))
+            fields.append((np.repeat(half_widths, x.shape[1]) * np.where(full, stress, 0.0) / sheared).reshape(nodal)[None])
         if ends and jump is not None and stretch[0, 0] == 1.0:  # the liquid behind the exit fills the gap up to a kink
             h = gap.reshape(x.shape)
             partly = (x[:, 0] > 0) & (h.min(axis=1) < guess.flux_gap) & (h.max(axis=1) > guess.flux_gap)
