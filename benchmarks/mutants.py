@@ -6,7 +6,7 @@ Usage::
 
 A fixed seed draws faults evenly over the lines of ``src`` that hold code: a comparison turned round, an arithmetic sign or a
 number changed, a condition negated, what a function returns left out.  First `make test` runs whole and keeps in
-``build/mutants.json`` which tests run which line, and how long each takes; needs pytest-cov.  For each fault the script
+``build/mutants.json`` which tests run which line, until a source changes; needs pytest-cov.  For each fault the script
 copies the checkout, applies the fault, and runs the tests of that line, the fastest first, until one fails.  Where none does
 it runs `make test`.  It prints a row a fault: the file, the fault, the test that caught it, and what was run.  Only what
 `make test` lets pass counts as survived.
@@ -167,7 +167,8 @@ def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 def measured() -> dict[str, Any]:
     """Return the tests, the fastest first, and the numbers of those that run each line of each file, from one run of all."""
-    if KEPT.exists():
+    sources = [path.stat().st_mtime for folder in ("src", "tests") for path in (ROOT / folder).rglob("*.py")]
+    if KEPT.exists() and KEPT.stat().st_mtime > max(sources):
         return dict(json.loads(KEPT.read_text(encoding="utf-8")))
     from coverage import CoverageData
 
