@@ -34,13 +34,13 @@ READ_MORE = {
 
 
 def row(name, command):
-    """Return what a command takes, with a link to its page, and what its help says first."""
+    """Return what a command takes, with a link to its page, and what its help says first, up to its details."""
     words = [name]
     for each in inspect.signature(command).parameters.values():
         if each.kind is not each.KEYWORD_ONLY:
             word = f"{each.name.upper()}{'...' * (each.kind is each.VAR_POSITIONAL or 'list' in str(each.annotation))}"
             words.append(word if each.default is each.empty else f"[{word}]")
-    said = inspect.getdoc(command).split("\n", 1)[0].rstrip(".").replace("|", r"\|")
+    said = re.split("[:;.\n]", inspect.getdoc(command))[0].replace("|", r"\|")
     shown = f"`{' '.join(words)}`"
     return f"| {f'[{shown}]({READ_MORE[name]})' if name in READ_MORE else shown} | {said} |\n"
 
