@@ -36,8 +36,8 @@ STATES = {
     "boundary": (1e-8, 0.1, 1e-2),
     "thin film": (1e-7, 0.1, 1e-6),
 }
-ORDERS = (6, 8, 10, 12, 14, 16)
-TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
+ORDERS = (6, 8, 12, 16)
+TOLERANCES = (1e-2, 1e-4, 1e-6, 1e-7)
 NEWTON = 1e-12
 
 

@@ -127,8 +127,8 @@ def table(rows: list[dict[str, Any]]) -> str:
     """Return the counts by kind."""
     lines = [
         "| states | number | solved | judged | error covered | worst error/stated | minimum film covered | worst"
-        " | load balance | identity | CPU s, median | most |",
-        "|---|---|---|---|---|---|---|---|---|---|---|---|",
+        " | CPU s, median | most |",
+        "|---|---|---|---|---|---|---|---|---|---|",
     ]
     for kind in (*dict.fromkeys(KINDS), "all"):
         some = [row for row in rows if kind in (row["kind"], "all")]
@@ -140,8 +140,7 @@ def table(rows: list[dict[str, Any]]) -> str:
         solved = sum(row["outcome"] == "CONVERGED" for row in some)
         lines.append(
             f"| {kind} | {len(some)} | {solved} | {len(checked)} | {np.mean(ratios <= 1):.1%} | {ratios.max():.1f}"
-            f" | {np.mean(minima <= 1):.1%} | {minima.max():.1f} | {max(row.get('load_error', 0.0) for row in some):.0e}"
-            f" | {max(row.get('identity', 0.0) for row in some):.0e} | {np.median(seconds):.1f} | {max(seconds):.0f} |"
+            f" | {np.mean(minima <= 1):.1%} | {minima.max():.1f} | {np.median(seconds):.1f} | {max(seconds):.0f} |"
         )
     return "\n".join(lines)
 

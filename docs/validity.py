@@ -16,7 +16,6 @@ import re
 import sys
 import time
 from collections.abc import Iterable, Sequence
-from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -39,8 +38,14 @@ IMAGES = FOLDER / "images"
 WORST = FOLDER.parent / "tests" / "data" / "worst_errors.json"
 """The largest error of each formula on its map and the state where it is, which tests solve again."""
 
-ABOUT = {"smooth": "smooth", "rest": "at rest", "mixed": "any state", "located": "a curve"} | {
-    kind: kind for kind in ("smooth ball", "ball at rest", "any ball")
+ABOUT = {
+    "smooth": "smooth",
+    "rest": "at rest",
+    "mixed": "any state",
+    "located": "a curve",
+    "smooth ball": "smooth",
+    "ball at rest": "at rest",
+    "any ball": "any state",
 }
 """What a formula is about, in the words of the table."""
 
@@ -113,36 +118,24 @@ def in_words(limits: Iterable[Limit]) -> str:
     return ", ".join(map(interval, limits))
 
 
-def goes_as(formula: Formula[Any]) -> str:
-    """Return the power of the small parameter as which the error of a formula vanishes; nothing where it does not."""
-    if not formula.small:
-        return ""
-    small, order = SYMBOLS[formula.small], Fraction(formula.error_order).limit_denominator(12)
-    if small.startswith("1/"):
-        small, order = small[2:], -order
-    return f"{small}<sup>{order}</sup>" if order != 1 else small
-
-
 def measured(data: xarray.Dataset) -> dict[str, Any]:
-    """Return the median error of a map in the range, and the largest with the state where it is."""
+    """Return the largest error of a map in the range, with the state where it is."""
     size = np.where(data["valid"].values, np.abs(data["error"].values), np.nan)
     if not np.isfinite(size).any():
         return {}
     at = np.unravel_index(int(np.nanargmax(size)), size.shape)
     found = zip(data["error"].dims, at, strict=True)
     place = {str(name): float(short(float(data[name].values[i]))) for name, i in found}
-    return {"median": float(np.nanmedian(size)), "largest": float(f"{size[at]:.3g}"), "at": place}
+    return {"largest": float(f"{size[at]:.3g}"), "at": place}
 
 
-def error_table(section: str, measures: dict[str, dict[str, Any]]) -> str:
-    """Return what the formulas of a section state of their errors, and the median over the grids of their pictures."""
+def error_table(section: str) -> str:
+    """Return the ranges of the formulas of a section and what they state of their errors."""
     rows = []
     for formula in of_modules(*SECTIONS[section]):
         holds = ", ".join(filter(None, (ABOUT[kind_of(formula)], in_words(formula.limits))))
-        median = measures[formula.name].get("median")
-        usual = "" if median is None else percent(median)
-        rows.append([f"`{formula.name}`", holds, percent(formula.worst), goes_as(formula), usual])
-    return table(["Formula", "Holds for", "Error stated", "falls as", "Median"], rows)
+        rows.append([f"`{formula.name}`", holds, percent(formula.worst)])
+    return table(["Formula", "Holds for", "Error [%]"], rows)
 
 
 def share_maps() -> list[tuple[Formula[Any], xarray.Dataset]]:
@@ -213,7 +206,7 @@ def main(wanted: Sequence[str] = ()) -> None:
     maps: dict[str, xarray.Dataset] = {}
     for kind in ABOUT:
         if judged := [each for each in of_modules(*wanted_modules) if kind_of(each) == kind]:
-            say(f"formulas about {ABOUT[kind]}")
+            say(f"formulas about {kind}")
             maps |= error_maps(judged)
     for module in wanted_modules:
         say(f"picture of {module}")
@@ -221,7 +214,7 @@ def main(wanted: Sequence[str] = ()) -> None:
         path = IMAGES / f"validity_{module.replace('.', '_')}.png"
         plot_error_maps(pairs, path, force=True, title=f"Errors of stribeck.asymptotics.{module}")
     found = {name: measured(data) for name, data in maps.items()}
-    blocks = {section: error_table(section, found) for section in SECTIONS if section in made}
+    blocks = {section: error_table(section) for section in SECTIONS if section in made}
     worst = json.loads(WORST.read_text()) | {name: [each["largest"], each["at"]] for name, each in found.items() if each}
     lines = [f"  {json.dumps(name)}: {json.dumps(worst[name])}" for name in sorted(worst)]
     WORST.write_text("{\n" + ",\n".join(lines) + "\n}\n")
