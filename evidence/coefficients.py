@@ -16,9 +16,9 @@ import numpy as np
 
 from stribeck import atlas
 from stribeck._types import Array
+from stribeck.asymptotics import boundary, mixed, transitions, uniform
 from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.formula import COEFFICIENT_RATIO, Formula
-from stribeck.asymptotics.rough import boundary, mixed, transitions, uniform
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
 

@@ -16,6 +16,8 @@ import numpy as np
 from evidence import ball
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Formula
+from stribeck.asymptotics.perturbation import phi
+from stribeck.asymptotics.point import rigid
 from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.contacts.groups import Groups
 from stribeck.curves.landmarks import Landmark
@@ -26,12 +28,14 @@ from stribeck.solver.point.state import PointState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import solve
 
-__all__ = ["FIELDS", "MEASURED", "REFERENCE_RTOL", "judged_groups", "relative_error"]
+__all__ = ["FIELDS", "FOLLOWED", "MEASURED", "REFERENCE_RTOL", "followed", "interval", "judged_groups", "relative_error"]
 
 # Fields along the contact: predicted by formulas of the groups and of positions x.
 FIELDS = ("gap", "pressure", "contact_pressure", "fluid_pressure")
 
 POSITION_COUNT = 201  # Positions in its interval at which a field is judged.
+
+LAYER_WIDTHS = 5.0  # Distance from the edge [layer widths] to which the fields of a layer are judged.
 
 REFERENCE_RTOL = 1e-7  # Relative tolerance of the reference states.
 
@@ -135,9 +139,79 @@ def relative_error(formula: Formula[Any], groups: Groups, **options: Any) -> flo
     return (found - right) / right
 
 
+def _at_rest(kappa: float, load: float = 0.1) -> Groups:
+    return Groups(0.0, load, load * kappa)
+
+
+def _ball(speed: float, load: float, kappa: float) -> Groups:
+    return Groups(speed, load, kappa * load ** (2 / 3), geometry="point")
+
+
+def _slow(root: float) -> Callable[[float], Groups]:
+    """Return groups by their roughness, so slow that the fluid carries the square of ``root``: higher orders count nothing."""
+    load = 1e-3
+    return lambda kappa: Groups(root * float(phi(load)) ** -0.5 * kappa**2, load, kappa * load)
+
+
+# Groups by the parameter with which the errors of a module vanish, and its values at which they are followed.
+FOLLOWED: dict[tuple[str, str], tuple[Callable[[float], Groups], tuple[float, ...]]] = {
+    ("hertz", "relative_roughness"): (_at_rest, (1e-3, 1e-4, 1e-5)),
+    ("hydrodynamic", "speed"): (lambda speed: Groups(speed, 0.1, 0.0), (1e-9, 1e-8, 1e-7)),
+    ("hydrodynamic", "1/speed"): (lambda inverse: Groups(1 / inverse, 0.1, 0.0), (1e-5, 1e-4, 1e-3)),
+    ("film_layers", "speed"): (lambda speed: Groups(speed, 0.1, 0.0), (1e-5, 1e-6, 1e-7, 1e-8)),
+    ("rest", "relative_roughness"): (_at_rest, (1e-2, 1e-3, 1e-4)),
+    # At a fixed load per roughness the logarithm in the gap stays what it is.
+    ("rest", "1/relative_roughness"): (lambda inverse: Groups(0.0, 1e-6 / inverse, 1e-6 / inverse**2), (1e-1, 1e-2, 1e-3)),
+    ("edge_layer", "relative_roughness"): (_at_rest, (1e-3, 1e-4, 1e-5)),
+    ("perturbation", "relative_roughness"): (_slow(1e-4), (1e-3, 1e-4, 1e-5)),
+    ("boundary", "relative_roughness"): (_slow(1e-3), (1e-3, 1e-4, 1e-5)),
+    ("boundary", "fluid_number"): (lambda number: Groups(number * 1e-12, 0.1, 1e-7), (2.0, 1.0, 0.5)),
+    ("wedge", "relative_roughness"): (lambda kappa: Groups(10.0 * kappa**2, 0.1, 0.1 * kappa), (1e-3, 3e-4, 1e-4, 3e-5)),
+    ("point.hertz", "relative_roughness"): (lambda kappa: _ball(0.0, 1e-3, kappa), (1e-2, 1e-3, 1e-4)),
+    ("point.rest", "relative_roughness"): (lambda kappa: _ball(0.0, 1e-3, kappa), (1e-2, 1e-3, 1e-4)),
+    ("point.rest", "1/relative_roughness"): (lambda inverse: _ball(0.0, (1e-3 / inverse) ** 3, 1 / inverse), (0.2, 0.1, 0.05)),
+    ("point.rigid", "1/speed"): (lambda inverse: _ball(1 / inverse, 1e-3, 0.0), (1e-2, 3e-3, 1e-3)),
+}
+
+# Other values for fields, whose errors reach their order later.
+LATER = {
+    "rest.gap": (1e-3, 1e-4, 1e-5),
+    "hydrodynamic.gap_small": (1e-7, 1e-6, 1e-5),
+    "hydrodynamic.pressure_small": (1e-7, 1e-6, 1e-5),
+}
+
+
+def followed(formula: Formula[Any]) -> dict[float, Groups]:
+    """Return the states at which the error of a formula is followed, by the parameter with which it vanishes."""
+    groups, values = FOLLOWED[formula.module, formula.small]
+    return {value: groups(value) for value in LATER.get(formula.name, values)}
+
+
+# Middle and half-width of what a field is judged over, by a part of its name; the last that fits.
+INTERVALS: dict[str, Callable[[Groups], tuple[float, float]]] = {
+    "hertz": lambda g: (0.0, 2.0),
+    "rest.gap": lambda g: (0.0, 0.9),
+    "small_indentation": lambda g: (0.0, 3 * float(g.relative_roughness) ** 0.5),  # standard deviations of the pressure
+    "perturbation": lambda g: (0.0, 0.9),
+    "edge_layer": lambda g: (1.0, LAYER_WIDTHS * float(g.relative_roughness) ** (2 / 3)),
+    "inlet": lambda g: (-1.0, LAYER_WIDTHS * float(g.speed) ** 0.4),
+    "outlet": lambda g: (1.0, LAYER_WIDTHS * float(g.speed) ** 0.4),
+    "hydrodynamic": lambda g: (0.0, 4 * float(g.speed) ** (1 / 3) / 24 ** (1 / 6)),
+    "point.rest.edge": lambda g: (1.0, LAYER_WIDTHS * (math.pi / 4 * float(g.relative_roughness)) ** (2 / 3)),
+    "point.film": lambda g: (0.0, 0.8),
+    "point.rigid": lambda g: (0.0, 3 * float(rigid.gap_of(g)) ** 0.5),
+}
+
+
+def interval(formula: Formula[Any], groups: Groups) -> tuple[float, float]:
+    """Return the positions between which a field is judged."""
+    where = [each for part, each in INTERVALS.items() if part in formula.name][-1]
+    middle, half = where(groups)
+    return middle - half, middle + half
+
+
 def field_error(formula: Formula[Any], groups: Groups, state: Solution | PointState, options: dict[str, Any]) -> float:
-    assert formula.interval is not None, f"{formula.name} is a field and has no interval"
-    ends = formula.interval(groups)
+    ends = interval(formula, groups)
     if not np.isfinite(ends).all():
         return math.nan
     x: Array = np.linspace(*ends, POSITION_COUNT)

@@ -6,7 +6,7 @@ Runs in a second.
 """
 
 import stribeck as sb
-from stribeck.asymptotics.rough import uniform
+from stribeck.asymptotics import uniform
 
 LOAD, ROUGHNESSES = 0.1, (1e-5, 1e-4, 1e-3)
 

@@ -75,7 +75,7 @@ def test_a_parabola_has_the_film_of_its_inlet_law():
     x = np.linspace(-1.2, 1.2, 161) * a
     p = p_max * np.sqrt(np.maximum(1 - (x / a) ** 2, 0))
     found = film_of_pressure(x, p, modulus=E, viscosity=ETA, speed=U)
-    law = sb.asymptotics.large_deformation.central_gap_large(contact.groups)
+    law = sb.asymptotics.hydrodynamic.central_gap_large(contact.groups)
     assert found.forward / contact.hertz.indentation == pytest.approx(0.44583045 * contact.groups.speed**0.6, rel=1e-6)
     assert found.forward == pytest.approx(law * contact.hertz.indentation, rel=0.02)
     assert found.backward == pytest.approx(found.forward, rel=1e-9)

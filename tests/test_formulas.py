@@ -18,7 +18,7 @@ from numpydoc.validate import validate
 
 import stribeck as sb
 from evidence.coefficients import JUDGED_FORMULAS, largest_errors
-from evidence.formulas import CURVE_QUANTITIES, FIELDS, MEASURED, relative_error
+from evidence.formulas import CURVE_QUANTITIES, FIELDS, FOLLOWED, MEASURED, followed, interval, relative_error
 from stribeck import asymptotics
 from stribeck.asymptotics import FORMULAS, Formula, OutOfRangeWarning
 from stribeck.asymptotics import formula as formulas
@@ -41,9 +41,7 @@ its range, which the speeds of the atlas's scan do not meet."""
 LINE = [formula for formula in FORMULAS if formula.geometry == "line"]
 # Those of the ball are judged in test_ball_formulas.py.
 NAMED = pytest.mark.parametrize("formula", LINE, ids=lambda formula: formula.name)
-ORDERED = pytest.mark.parametrize(
-    "formula", [formula for formula in LINE if formula.approach], ids=lambda formula: formula.name
-)
+ORDERED = pytest.mark.parametrize("formula", [each for each in LINE if each.small], ids=lambda formula: formula.name)
 
 
 def in_box(formula, groups):
@@ -105,11 +103,15 @@ def coefficients(formula):
     return [*ends, {"boundary_friction": 1.0, "beta": 0.03}]
 
 
+def needs_coefficients(formula):
+    return formulas.COEFFICIENT_RATIO in {limit.parameter for limit in formula.limits}
+
+
 def arguments(formula, groups):
     """Return what a formula needs beside the groups: a position for a field."""
     if formula.predicts not in FIELDS:
         return ()
-    low, high = formula.interval(groups)
+    low, high = interval(formula, groups)
     return (low + 0.3 * (high - low),)
 
 
@@ -136,7 +138,7 @@ def test_the_laws_of_a_layer_are_judged_over_five_widths_of_it_to_both_sides():
         (rest.edge_gap, ball, 1),
         (rest.edge_contact_pressure, ball, 1),
     ):
-        assert law.interval(groups) == pytest.approx((place - 0.05, place + 0.05), rel=1e-12), law.name
+        assert interval(law, groups) == pytest.approx((place - 0.05, place + 0.05), rel=1e-12), law.name
 
 
 def test_names_of_formulas_are_unique_and_lead_to_them():
@@ -150,23 +152,20 @@ def test_what_a_formula_says_of_itself_is_complete():
     def faults(formula):
         yield "source", formula.source
         yield "predicts", formula.predicts in MEASURED or formula.predicts in FIELDS
-        yield "interval", (formula.interval is None) == (formula.predicts not in FIELDS)
         yield "plane", formula.plane in ("smooth", "rest", "mixed")
         yield "worst", 0 < formula.worst < 1
         yield "limits", {limit.parameter for limit in formula.limits} <= {*formulas.PARAMETERS, formulas.COEFFICIENT_RATIO}
-        yield (
-            "approach",
-            bool(formula.small) == bool(formula.approach) == (len(formula.steps) >= 3) == (formula.error_order > 0),
-        )
+        yield "order", bool(formula.small) == (formula.error_order > 0)
         yield "small", not formula.small or formula.small in formulas.PARAMETERS
 
     assert [(formula.name, name) for formula in FORMULAS for name, holds in faults(formula) if not holds] == []
+    assert {(formula.module, formula.small) for formula in FORMULAS if formula.small} == set(FOLLOWED)
 
 
 def test_a_formula_of_both_coefficients_states_for_which_of_them_its_error_holds():
     for formula in LINE:
         has_both = {"boundary_friction", "beta"} <= set(inspect.signature(formula.function).parameters)
-        assert formula.needs_coefficients == has_both, formula.name
+        assert needs_coefficients(formula) == has_both, formula.name
         if has_both:
             assert formulas.COEFFICIENT_RATIO in formula.range, formula.name
             # What rubber and gels have, by the surfaces of theory.md, section 8.
@@ -215,11 +214,10 @@ def test_a_formula_depends_on_the_groups_that_it_names_and_on_no_others(subtests
 
 @ORDERED
 def test_the_error_of_a_formula_vanishes_with_the_stated_order(formula):
-    small = np.sort(formula.steps)
-    approached = [formula.approach(float(value)) for value in small]
-    for groups, value in zip(approached, small, strict=True):
+    small, states = zip(*sorted(followed(formula).items()), strict=True)
+    for groups, value in zip(states, small, strict=True):
         assert math.isclose(float(formulas.PARAMETERS[formula.small](groups)), value, rel_tol=1e-9)
-    errors = np.abs([relative_error(formula, groups) for groups in approached])
+    errors = np.abs([relative_error(formula, groups) for groups in states])
     assert (np.diff(errors) > 0).all(), errors
     slope = np.polyfit(np.log(small), np.log(errors), 1)[0]
     of_a_layer = formula.module in ("edge_layer", "film_layers")
@@ -259,7 +257,7 @@ def test_the_law_of_mixed_friction_is_worst_where_its_limits_meet():
 
 
 def test_the_scan_over_coefficients_knows_every_law_that_has_both():
-    assert {id(law) for law, _ in JUDGED_FORMULAS.values()} == {id(law) for law in LINE if law.needs_coefficients}
+    assert {id(law) for law, _ in JUDGED_FORMULAS.values()} == {id(law) for law in LINE if needs_coefficients(law)}
 
 
 def test_the_stated_error_of_a_formula_is_not_much_larger_than_what_a_dense_scan_found():
@@ -294,7 +292,7 @@ def test_a_formula_is_silent_in_its_range():
 
 def test_a_friction_law_warns_of_coefficients_outside_its_range(subtests):
     for given in [{"beta": 300.0}, {"boundary_friction": 1e-6}, {"boundary_friction": 0.0}]:
-        for law in [law for law in LINE if law.needs_coefficients]:
+        for law in [law for law in LINE if needs_coefficients(law)]:
             with subtests.test(given=given, law=law):
                 groups = states(law)[0]
                 value = law.function(groups, **given)
@@ -314,11 +312,7 @@ def test_a_formula_outside_its_range_or_without_value_warns_once_and_is_never_co
             ):
                 with warnings.catch_warnings(record=True) as caught:
                     warnings.simplefilter("always")
-                    x = (
-                        arguments(formula, groups)
-                        if not formula.interval or np.isfinite(formula.interval(groups)).all()
-                        else (0.3,)
-                    )
+                    x = (0.3,) if formula.predicts in FIELDS else ()
                     caught.clear()
                     value = formula(groups, *x)
                 assert np.isrealobj(value) and np.ndim(value) == 0, (formula.name, groups)
@@ -344,7 +338,7 @@ def test_from_load_one_on_the_laws_of_load_sharing_have_no_value_and_say_so():
     assert len(laws) >= 13
     for law in laws:
         with pytest.warns(OutOfRangeWarning, match=f"{law.name} is undefined .nan. outside its range"):
-            found = law(sb.Groups(1e-12, [0.1, 1.0, 3.0], 1e-6), *((0.3,) if law.interval else ()))
+            found = law(sb.Groups(1e-12, [0.1, 1.0, 3.0], 1e-6), *((0.3,) if law.predicts in FIELDS else ()))
         assert np.isnan(found).tolist() == [False, True, True], law.name
     with pytest.warns(OutOfRangeWarning, match="at load groups of 1 or more"):
         assert np.isnan(asymptotics.perturbation.phi([0.1, 1.0, 3.0])).tolist() == [False, True, True]
@@ -408,7 +402,7 @@ def test_a_formula_takes_arrays_that_broadcast_and_gives_what_it_gives_for_their
 def check_arrays(formula):
     """Check the values of a formula for arrays of states against those for each state."""
     some = states(formula)
-    ends = formula.interval(some[0]) if formula.interval else ()
+    ends = interval(formula, some[0]) if formula.predicts in FIELDS else ()
     x = (np.mean(ends) + np.array([-0.1, 0.1]) * np.ptp(ends),) if ends else ()
     one_by_one = [formula.function(groups, *(each[i] for each in x)) for i, groups in enumerate(some)]
     speed, load, roughness = (np.array([getattr(groups, name) for groups in some]) for name in ("speed", "load", "roughness"))

@@ -6,12 +6,24 @@ end have theirs in :mod:`stribeck.asymptotics.free_exit`.
 
 from typing import Any
 
-from stribeck.asymptotics import point
-from stribeck.asymptotics.dry import hertz, rest
+from stribeck.asymptotics import (
+    boundary,
+    edge_layer,
+    film_layers,
+    free_exit,
+    hertz,
+    hydrodynamic,
+    load_sharing,
+    mixed,
+    perturbation,
+    point,
+    rest,
+    transitions,
+    uniform,
+    wedge,
+)
 from stribeck.asymptotics.formula import Formula, Limit, OutOfRangeWarning
-from stribeck.asymptotics.rough import boundary, free_exit, load_sharing, mixed, perturbation, transitions, uniform
-from stribeck.asymptotics.smooth import edge_layer, film_layers, hydrodynamic, large_deformation, small_deformation, wedge
-from stribeck.asymptotics.smooth.film_of_pressure import film_of_pressure
+from stribeck.asymptotics.pressure_film import film_of_pressure
 
 __all__ = [
     "FORMULAS",
@@ -37,36 +49,16 @@ __all__ = [
     "wedge",
 ]
 
-_IN_READING_ORDER = (
-    hertz,
-    large_deformation,
-    small_deformation,
-    hydrodynamic,
-    film_layers,
-    rest,
-    edge_layer,
-    perturbation,
-    boundary,
-    wedge,
-    mixed,
-    transitions,
-    load_sharing,
-    uniform,
-    point.hertz,
-    point.rest,
-    point.film,
-    point.rigid,
-    point.regressions,
-    point.boundary,
-    point.sharing,
-    point.friction,
-)
+large_deformation = small_deformation = hydrodynamic  # both limits of the smooth contact, by their names
+
+_SMOOTH, _AT_REST, _SLOW = (hertz, hydrodynamic, film_layers), (rest, edge_layer), (perturbation, boundary, wedge)
+_ANY_SPEED = (mixed, transitions, load_sharing, uniform)
+_OF_BALL = tuple(getattr(point, name) for name in point.__all__)
 
 FORMULAS: tuple[Formula[Any], ...] = tuple(
     each
-    for module in _IN_READING_ORDER
+    for module in (*_SMOOTH, *_AT_REST, *_SLOW, *_ANY_SPEED, *_OF_BALL)
     for each in vars(module).values()
     if isinstance(each, Formula) and each.function.__module__ == module.__name__
 )
-"""All formulas, in the order in which a reader meets them: for the cylinder the smooth contact, the contact at rest, mixed
-lubrication; then those of the ball likewise."""
+"""All formulas: for the cylinder the smooth contact, the contact at rest, mixed lubrication; then those of the ball."""

@@ -1,7 +1,7 @@
 """Universal constants of the limits, each computed by this package; ``tests/test_layers.py`` computes them again.
 
-All digits are correct.  Source: the similarity problems of :mod:`stribeck.asymptotics.smooth.film_layers` and
-:mod:`stribeck.asymptotics.smooth.edge_layer`.
+All digits are correct.  Source: the similarity problems of :mod:`stribeck.asymptotics.film_layers` and
+:mod:`stribeck.asymptotics.edge_layer`.
 """
 
 import math

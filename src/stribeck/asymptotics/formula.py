@@ -149,14 +149,6 @@ class Formula(Described, Generic[Arguments]):
     source: Annotated[str, "its source"]
     small: Annotated[str, "parameter with which the error vanishes, a key of :data:`PARAMETERS`; empty for a fit"] = ""
     error_order: Annotated[float, "the relative error goes as ``small**error_order``"] = 0.0
-    approach: Annotated[Callable[[float], Groups] | None, "``approach(small)``: groups along which the error is followed"] = (
-        None
-    )
-    steps: Annotated[tuple[float, ...], "values of ``small`` at which tests follow it"] = ()
-    interval: Annotated[
-        Callable[[Groups], tuple[float, float]] | None,
-        "of a field: ``interval(groups)``, the positions [a] between which it is compared with the solver",
-    ] = None
     geometry: Annotated[Geometry, "whether it is about the cylinder or about the ball"] = "line"
     uses: Annotated[tuple[str, ...], "the groups on which its value depends"] = GROUPS
 
@@ -183,11 +175,6 @@ class Formula(Described, Generic[Arguments]):
         falls = f", and falls{power.removesuffix('**(1)')}" if self.small else ""
         where = f"Range: {self.range}; the error there is at most {100 * self.worst:g} %{falls}."
         return "\n\n".join(textwrap.fill(each, 100, break_on_hyphens=False) for each in (where, f"Source: {self.source}."))
-
-    @property
-    def needs_coefficients(self) -> bool:
-        """Whether the range depends on mu0 and beta."""
-        return any(limit.parameter == COEFFICIENT_RATIO for limit in self.limits)
 
     def valid(self, groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0) -> Flags:
         """Return where all limits hold: nowhere for groups of the other geometry or of another model.

@@ -17,7 +17,7 @@ from stribeck.quantities.units import InputError, checked_word, show, to_si
 
 if TYPE_CHECKING:
     from stribeck._types import Array
-    from stribeck.asymptotics.smooth.film_of_pressure import Inlet, PressureFilm
+    from stribeck.asymptotics.pressure_film import Inlet, PressureFilm
 
 Given = Annotated[float | str, Parameter(allow_leading_hyphen=True)]
 

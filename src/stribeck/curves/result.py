@@ -12,7 +12,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asperity_friction.coulomb import as_asperity_friction
-from stribeck.asymptotics.smooth import hydrodynamic
+from stribeck.asymptotics import hydrodynamic
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact, model_words
 from stribeck.contacts.friction import Definition, FrictionArray

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.asymptotics.smooth import hydrodynamic
+from stribeck.asymptotics import hydrodynamic
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import BASE_MODEL

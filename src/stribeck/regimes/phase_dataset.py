@@ -98,7 +98,7 @@ def _row_groups(diagram: Diagram) -> tuple[Groups, Array]:
 
 def _formula_speeds(diagram: Diagram, groups: Groups, unit: Array) -> dict[str, Array]:
     """Return the transitions that the formulas give, in the units of the axis; nan where they have none."""
-    from stribeck.asymptotics.rough import load_sharing, transitions
+    from stribeck.asymptotics import load_sharing, transitions
 
     if not diagram.kind.has_formulas:
         return {name: np.full(unit.shape, np.nan) for name in FORMULA_SPEEDS}
@@ -118,7 +118,7 @@ def _formula_speeds(diagram: Diagram, groups: Groups, unit: Array) -> dict[str, 
 
 
 def _formula_merging(diagram: Diagram, groups: Groups) -> Array:
-    from stribeck.asymptotics.rough import transitions
+    from stribeck.asymptotics import transitions
 
     loads = np.asarray(groups.load)[:, 0]
     if not (diagram.kind.has_formulas and transitions.speed_at_minimum.holds_for(groups.law)):

@@ -3,7 +3,7 @@
 from stribeck.quantities.lazy import lazy_names as _lazy_names
 
 _HOMES = {
-    "asymptotics.smooth.film_of_pressure": ("Films", "Inlet", "PressureFilm"),
+    "asymptotics.pressure_film": ("Films", "Inlet", "PressureFilm"),
     "batches.result": ("BatchSolution",),
     "bench.loop_fit": ("LoopFit",),
     "bench.result": ("BenchCurve",),

@@ -1,6 +1,6 @@
 """The public names with their types; at run time each is imported on first use."""
 
-from stribeck.asymptotics.smooth.film_of_pressure import Films, Inlet, PressureFilm
+from stribeck.asymptotics.pressure_film import Films, Inlet, PressureFilm
 from stribeck.batches.result import BatchSolution
 from stribeck.bench.loop_fit import LoopFit
 from stribeck.bench.result import BenchCurve

@@ -17,7 +17,6 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.constants import BALL_FILM_CONSTANT, FILM_CONSTANT, MINIMUM_CONSTANT
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.judged import around
 from stribeck.asymptotics.point.rigid import GAP_COEFFICIENT
 from stribeck.contacts.groups import Groups
 
@@ -90,7 +89,6 @@ def film_of(speed: Value) -> Value:
     limits=(Limit("speed", 0.0, 1e-3),),
     undefined="from the edge of the contact outwards, where this has no value",
     worst=0.03,
-    interval=around(0.0, lambda groups: 0.8),
     source="ours",
 )
 def gap_slow(groups: Groups, x: Value) -> Value:

@@ -12,7 +12,6 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.judged import AROUND_CONTACT, ball_at_rest
 from stribeck.contacts.groups import Groups
 from stribeck.solids import hertz
 
@@ -27,8 +26,6 @@ _dry = partial(
     limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-3)),
     small="relative_roughness",
     error_order=1,
-    approach=ball_at_rest,
-    steps=(1e-2, 1e-3, 1e-4),
 )
 
 
@@ -36,7 +33,6 @@ _dry = partial(
     limits=(Limit("speed", 0, 1e-7), Limit("relative_roughness", 0, 1e-3)),
     worst=0.11,
     error_order=1 / 3,
-    interval=AROUND_CONTACT,
     source="Hertz (1882)",
 )
 def pressure(groups: Groups, x: Value) -> Value:
@@ -49,7 +45,7 @@ def pressure(groups: Groups, x: Value) -> Value:
     return hertz.pressure(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
 
 
-@_dry(worst=0.012, interval=AROUND_CONTACT, source="Johnson (1985), Section 3.4")
+@_dry(worst=0.012, source="Johnson (1985), Section 3.4")
 def gap(groups: Groups, x: Value) -> Value:
     r"""Return the gap around the dry contact of a ball.
 

@@ -1,6 +1,6 @@
 r"""The rough ball at rest, of large and of small indentation, and its edge.
 
-The edge is that of the line with :math:`\pi\kappa/4` for :math:`\kappa` (:mod:`stribeck.asymptotics.smooth.edge_layer`).
+The edge is that of the line with :math:`\pi\kappa/4` for :math:`\kappa` (:mod:`stribeck.asymptotics.edge_layer`).
 
 Source: ours; theory.md, section 11.
 """
@@ -13,10 +13,9 @@ from functools import partial
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.asymptotics.dry.rest import below_one
+from stribeck.asymptotics.edge_layer import layer
 from stribeck.asymptotics.formula import Limit, Value, formula, second
-from stribeck.asymptotics.judged import INSIDE_CONTACT, around, ball_at_rest
-from stribeck.asymptotics.smooth.edge_layer import layer
+from stribeck.asymptotics.rest import below_one
 from stribeck.contacts.groups import Groups
 
 CATALAN = 0.915965594177219  # Catalan's constant.
@@ -29,14 +28,6 @@ SMALL_INDENTATION = (Limit("load", 1e-7, 0.5), Limit("1/relative_roughness", 0, 
 
 GAUSS_RULE = np.polynomial.legendre.leggauss(40)  # Rule of the correction of the pressure, good to rounding.
 
-LAYER_WIDTHS = 5.0  # Distance from the edge [layer widths] to which the fields are compared with the solver.
-
-
-def _rougher(inverse: float) -> Groups:
-    # At a fixed pressure of the law over that in the middle the logarithm in the gap stays what it is.
-    load = (1e-3 / inverse) ** 3
-    return Groups(0.0, load, load ** (2 / 3) / inverse, geometry="point")
-
 
 _large_indentation = partial(
     formula,
@@ -46,15 +37,12 @@ _large_indentation = partial(
     limits=LARGE_INDENTATION,
     small="relative_roughness",
     error_order=1,
-    approach=ball_at_rest,
-    steps=(1e-2, 1e-3, 1e-4),
 )
 
 
 @_large_indentation(
     undefined="from the edge of the contact outwards, where this has no value",
     worst=0.05,
-    interval=INSIDE_CONTACT,
     source="ours",
 )
 def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
@@ -121,9 +109,6 @@ _at_edge = partial(
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-5, 1e-2)),
     small="relative_roughness",
     error_order=2 / 3,
-    approach=ball_at_rest,
-    steps=(1e-2, 1e-3, 1e-4),
-    interval=around(1.0, lambda groups: LAYER_WIDTHS * (math.pi * groups.relative_roughness / 4) ** (2 / 3)),
     source="ours, with the edge of the line",
 )
 
@@ -137,7 +122,7 @@ def edge_gap(groups: Groups, x: Value) -> Value:
         h = \kappa \left[-\tfrac13 \ln F - \tfrac13 \ln\frac{\pi\kappa}{4} + H(\xi)\right], \qquad
         \xi = \frac{|x| - 1 + \kappa}{(\pi\kappa/4)^{2/3}}
 
-    H is the layer of the line, :func:`stribeck.asymptotics.smooth.edge_layer.layer`.  Compared within 5 widths of the edge.
+    H is the layer of the line, :func:`stribeck.asymptotics.edge_layer.layer`.  Compared within 5 widths of the edge.
     """
     kappa = groups.relative_roughness
     wide = np.multiply(math.pi / 4, kappa)
@@ -164,8 +149,6 @@ _small_indentation = partial(
     geometry="point",
     limits=SMALL_INDENTATION,
     small="1/relative_roughness",
-    approach=_rougher,
-    steps=(0.2, 0.1, 0.05),
     source="ours, as for the line",
 )
 

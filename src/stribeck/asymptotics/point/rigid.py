@@ -15,7 +15,6 @@ from functools import partial
 import numpy as np
 
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.judged import around
 from stribeck.contacts.groups import Groups
 
 LIFT_COEFFICIENT = 27 * math.pi**2 / (6400 * math.sqrt(2))  # Load of the fluid over lambda**2 h_0**(-5/2).
@@ -24,10 +23,6 @@ LIFT_COEFFICIENT = 27 * math.pi**2 / (6400 * math.sqrt(2))  # Load of the fluid 
 GAP_COEFFICIENT = (3 * LIFT_COEFFICIENT / (2 * math.pi)) ** 0.4
 
 FAST_RANGE = (Limit("speed", 1e2),)
-
-
-def _fast(inverse_speed: float) -> Groups:
-    return Groups(1 / inverse_speed, 1e-3, 0.0, geometry="point")
 
 
 def gap_of(groups: Groups) -> Value:
@@ -42,8 +37,6 @@ _rigid = partial(
     plane="smooth",
     geometry="point",
     small="1/speed",
-    approach=_fast,
-    steps=(1e-2, 3e-3, 1e-3),
     source="ours",
 )
 
@@ -60,9 +53,7 @@ def minimum_gap(groups: Groups) -> Value:
     return gap_of(groups)
 
 
-@_rigid(
-    limits=(Limit("speed", 3e2),), worst=0.26, error_order=0.6, interval=around(0.0, lambda groups: 3 * gap_of(groups) ** 0.5)
-)
+@_rigid(limits=(Limit("speed", 3e2),), worst=0.26, error_order=0.6)
 def fluid_pressure(groups: Groups, x: Value) -> Value:
     r"""Return the fluid pressure of a fast smooth ball along its middle, to the order that carries no load.
 

@@ -1,6 +1,6 @@
 r"""How asperities and fluid share the load under a ball at any speed, explicitly as the speed of a share, and the inverse.
 
-Wedge and film are those of the line (:mod:`stribeck.asymptotics.rough.load_sharing`), with the gap at rest of the ball; but
+Wedge and film are those of the line (:mod:`stribeck.asymptotics.load_sharing`), with the gap at rest of the ball; but
 the film is a horseshoe, :math:`h = \kappa H (1 - y^2)^q` with a fitted q, whose thin sides asperities touch first.
 
 Source: ours; theory.md, section 11.
@@ -16,10 +16,10 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.load_sharing import odds_of
 from stribeck.asymptotics.point.boundary import SHARE_EDGE_COEFFICIENTS, phi_of
 from stribeck.asymptotics.point.film import film_of
 from stribeck.asymptotics.point.rest import CATALAN
-from stribeck.asymptotics.rough.load_sharing import odds_of
 from stribeck.contacts.groups import Groups
 
 # Range of the states to which the coefficients are fitted.

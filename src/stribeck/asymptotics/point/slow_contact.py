@@ -5,7 +5,7 @@ With gaps in :math:`\kappa u_\mathrm{Hz}`, :math:`H_0 = A - \tfrac12 \ln(1 - r^2
 
 .. math:: \frac1r (r H_0^3 P_1')' - \frac{H_0^3}{r^2} P_1 = H_0', \qquad P_1(0) = P_1(1) = 0 .
 
-All of it depends on the load alone.  The coordinate is that of the line (:mod:`stribeck.asymptotics.rough.slow_contact`),
+All of it depends on the load alone.  The coordinate is that of the line (:mod:`stribeck.asymptotics.slow_contact`),
 :math:`r = \tanh(\delta \sinh v)` with :math:`\cos\delta = e^{-A}`: the zeros of :math:`H_0` then lie at the same place
 whatever the load.  Spectral elements in v; beyond, where :math:`1 - r^2 < 10^{-16}`, nothing is left.
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.asymptotics.rough import boundary, perturbation
+from stribeck.asymptotics import boundary, perturbation
 from stribeck.curves.result import StribeckCurve
 from stribeck.figures import style
 from stribeck.figures.article.stribeck_cases import CASES, drawn_cases, give_cases, solved_cases

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from stribeck.asymptotics import film_layers
 from stribeck.asymptotics.constants import FILM_CONSTANT
-from stribeck.asymptotics.smooth import film_layers
 from stribeck.figures import style
 from stribeck.figures.job import FigureJob
 from stribeck.figures.style import Axes, DataArray, Dataset, Figure

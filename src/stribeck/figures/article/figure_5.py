@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from stribeck.asymptotics.smooth import hydrodynamic
+from stribeck.asymptotics import hydrodynamic
 from stribeck.contacts.groups import Groups
 from stribeck.figures import style
 from stribeck.figures.job import FigureJob

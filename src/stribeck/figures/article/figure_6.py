@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.asymptotics.rough import boundary
-from stribeck.asymptotics.smooth import edge_layer
+from stribeck.asymptotics import boundary, edge_layer
 from stribeck.contacts.groups import Groups
 from stribeck.figures import style
 from stribeck.figures.job import FigureJob

@@ -7,8 +7,7 @@ import math
 import numpy as np
 
 from stribeck._types import Array, Flags
-from stribeck.asymptotics.rough import transitions
-from stribeck.asymptotics.smooth import hydrodynamic
+from stribeck.asymptotics import hydrodynamic, transitions
 from stribeck.contacts.groups import Groups
 from stribeck.figures import style
 from stribeck.figures.article.stribeck_cases import (

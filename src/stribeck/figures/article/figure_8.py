@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stribeck.asymptotics.rough import boundary
+from stribeck.asymptotics import boundary
 from stribeck.contacts.groups import Groups
 from stribeck.figures import style
 from stribeck.figures.job import FigureJob

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from stribeck._types import Array, Flags
+from stribeck.asymptotics import mixed, transitions
 from stribeck.asymptotics.constants import FILM_CONSTANT
-from stribeck.asymptotics.rough import mixed, transitions
 from stribeck.contacts.groups import Groups
 from stribeck.curves.landmarks import Landmark
 from stribeck.figures.article.mixed_panels import MAX_FILM_RATIO, MAX_KAPPA, MIN_FILM_RATIO, draw

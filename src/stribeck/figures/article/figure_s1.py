@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from stribeck._types import Array, Flags
-from stribeck.asymptotics.rough import perturbation
+from stribeck.asymptotics import perturbation
 from stribeck.contacts.groups import Groups
 from stribeck.figures import style
 from stribeck.figures.job import FigureJob

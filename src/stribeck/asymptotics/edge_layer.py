@@ -20,8 +20,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.judged import around, line_at_rest
-from stribeck.asymptotics.smooth.half_line import HalfLine, Layer
+from stribeck.asymptotics.half_line import HalfLine, Layer
 from stribeck.contacts.groups import Groups
 from stribeck.numerics.newton import Dense, StepControl, root_find
 from stribeck.numerics.threads import one_blas_thread
@@ -29,7 +28,6 @@ from stribeck.numerics.threads import one_blas_thread
 LAYER_LOAD = 0.5 * np.pi  # Integral of P - P_H over the layer.
 
 LAYER_RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-6, 1e-2))
-LAYER_WIDTHS = 5.0  # Distance from the edge [layer widths] to which the fields are compared with the solver.
 
 
 def _coordinate(groups: Groups, x: Value, printed: bool) -> Array:
@@ -44,9 +42,6 @@ _edge = partial(
     limits=LAYER_RANGE,
     small="relative_roughness",
     error_order=2 / 3,
-    approach=line_at_rest,
-    steps=(1e-3, 1e-4, 1e-5),
-    interval=around(1.0, lambda groups: LAYER_WIDTHS * groups.relative_roughness ** (2 / 3)),
     source="[BP] Appendix B; the edge at 1 - kappa is ours",
 )
 

@@ -1,6 +1,6 @@
 """Slow speed at a rough contact of small relative roughness: the fields to second order in the speed, and the fluid's load.
 
-With gaps in kappa u_Hz all depend on the load alone; :mod:`stribeck.asymptotics.rough.slow_contact` integrates.
+With gaps in kappa u_Hz all depend on the load alone; :mod:`stribeck.asymptotics.slow_contact` integrates.
 
 Source: [BP] Appendix C and D, with the cubes that the former lacks; theory.md, section 7.
 """
@@ -8,7 +8,6 @@ Source: [BP] Appendix C and D, with the cubes that the former lacks; theory.md, 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from functools import partial
 from typing import Literal, get_args
 
@@ -16,10 +15,9 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.documentation import described
-from stribeck.asymptotics.dry.rest import below_one
 from stribeck.asymptotics.formula import Limit, Value, checked_load, fluid_number, formula
-from stribeck.asymptotics.judged import INSIDE_CONTACT
-from stribeck.asymptotics.rough.slow_contact import half_logarithm, of_load, outward
+from stribeck.asymptotics.rest import below_one
+from stribeck.asymptotics.slow_contact import half_logarithm, of_load, outward
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.units import checked_word
 
@@ -98,19 +96,7 @@ def shear(load: Value) -> Value:
     return of_load(load, lambda c: 2 * c.integral(1 / c.H + 3 * c.first(2)))
 
 
-def smoother(root: float) -> Callable[[float], Groups]:
-    """Return groups by their roughness, so slow that the fluid carries the square of ``root``: higher orders count nothing."""
-    load = 1e-3
-
-    def approach(kappa: float) -> Groups:
-        return Groups(root * float(phi_of(load)) ** -0.5 * kappa**2, load, kappa * load)
-
-    return approach
-
-
-_expansion = partial(
-    formula, plane="mixed", small="relative_roughness", error_order=2 / 3, approach=smoother(1e-4), steps=(1e-3, 1e-4, 1e-5)
-)
+_expansion = partial(formula, plane="mixed", small="relative_roughness", error_order=2 / 3)
 
 
 @_expansion(
@@ -136,7 +122,6 @@ def flux_gap(groups: Groups) -> Value:
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 1e-4)),
     undefined="from load 1 on",
     worst=0.07,
-    interval=INSIDE_CONTACT,
     source="[BP] Eqs. (first-order_thin-film) and (pf1), which lack the cube that Appendix D has",
 )
 def fluid_pressure_first(groups: Groups, x: Value, printed: bool = False) -> Value:
@@ -170,7 +155,6 @@ def _first_pressure(load: Value, x: Value, power: int = 3) -> Array:
     undefined="outside the contact, where this has no value, and from load 1 on",
     worst=0.06,
     error_order=1,
-    interval=INSIDE_CONTACT,
     source="[BP] Eqs. (central_region_contact) and (h1)",
 )
 def gap_first(groups: Groups, x: Value) -> Value:
@@ -191,7 +175,6 @@ def gap_first(groups: Groups, x: Value) -> Value:
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 0.01)),
     undefined="from load 1 on",
     worst=0.085,
-    interval=INSIDE_CONTACT,
     source="[BP] Eqs. (pf1), with cubed denominator, and (p2)",
 )
 def fluid_pressure_second(groups: Groups, x: Value) -> Value:

@@ -10,7 +10,6 @@ from functools import partial
 import numpy as np
 
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.judged import AROUND_CONTACT, line_at_rest
 from stribeck.contacts.groups import Groups
 from stribeck.solids import hertz
 
@@ -21,8 +20,6 @@ _dry = partial(
     limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-4)),
     small="relative_roughness",
     error_order=1,
-    approach=line_at_rest,
-    steps=(1e-3, 1e-4, 1e-5),
 )
 
 
@@ -30,7 +27,6 @@ _dry = partial(
     limits=(Limit("speed", 0, 1e-7), Limit("relative_roughness", 0, 1e-4)),
     worst=0.05,
     error_order=1 / 3,
-    interval=AROUND_CONTACT,
     source="[BP] Eq. (Hertz)",
 )
 def pressure(groups: Groups, x: Value) -> Value:
@@ -44,7 +40,7 @@ def pressure(groups: Groups, x: Value) -> Value:
     return hertz.pressure(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
 
 
-@_dry(worst=1e-3, interval=AROUND_CONTACT, source="[BP] Eq. (Hertz)")
+@_dry(worst=1e-3, source="[BP] Eq. (Hertz)")
 def gap(groups: Groups, x: Value) -> Value:
     r"""Return the gap around the dry contact.
 

@@ -14,21 +14,11 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula, second
-from stribeck.asymptotics.judged import INSIDE_CONTACT, around, line_at_rest
 from stribeck.contacts.groups import Groups
 from stribeck.solids import hertz
 
 LARGE_INDENTATION = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-2))
 SMALL_INDENTATION = (Limit("load", 1e-8, 0.5), Limit("1/relative_roughness", 0, 0.1))
-
-
-def _rougher(inverse: float) -> Groups:
-    # At a fixed load per roughness the logarithm in the gap stays what it is.
-    return Groups(0.0, 1e-6 / inverse, 1e-6 / inverse**2)
-
-
-# Three standard deviations of the pressure.
-_gaussian = around(0.0, lambda groups: 3 * math.sqrt(float(groups.relative_roughness)))
 
 
 _large_indentation = partial(
@@ -38,16 +28,12 @@ _large_indentation = partial(
     limits=LARGE_INDENTATION,
     small="relative_roughness",
     error_order=1,
-    approach=line_at_rest,
-    steps=(1e-2, 1e-3, 1e-4),
 )
 
 
 @_large_indentation(
     undefined="from the edge of the contact outwards, where this has no value",
     worst=0.03,
-    steps=(1e-3, 1e-4, 1e-5),
-    interval=INSIDE_CONTACT,
     source="[BP] Eq. (central_region_contact)",
 )
 def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
@@ -97,14 +83,10 @@ _small_indentation = partial(
     limits=SMALL_INDENTATION,
     small="1/relative_roughness",
     error_order=1,
-    approach=_rougher,
-    steps=(1e-1, 1e-2, 1e-3),
 )
 
 
-@_small_indentation(
-    predicts="gap", worst=0.011, interval=_gaussian, source="[BP] Eq. (separation_small_indentation); the second term is ours"
-)
+@_small_indentation(predicts="gap", worst=0.011, source="[BP] Eq. (separation_small_indentation); the second term is ours")
 def gap_small_indentation(groups: Groups, x: Value, terms: int = 1) -> Value:
     r"""Return the gap at rest of a very rough contact, which is hardly deflected.
 
@@ -150,7 +132,6 @@ def offset_small_indentation(groups: Groups) -> Value:
     predicts="contact_pressure",
     uses=("relative_roughness",),
     worst=0.018,
-    interval=_gaussian,
     source="[BP] Section 'Small indentation limit', without its minus sign",
 )
 def contact_pressure_small_indentation(groups: Groups, x: Value, printed: bool = False) -> Value:

@@ -1,6 +1,6 @@
 r"""Boundary lubrication: how much of the load and friction a slow fluid takes over at small relative roughness.
 
-The contact at rest is that of :mod:`stribeck.asymptotics.dry.rest`, whose formulas this module imports.
+The contact at rest is that of :mod:`stribeck.asymptotics.rest`, whose formulas this module imports.
 
 Source: [BP] Section "Boundary-to-mixed lubrication transition", Appendix C; theory.md, section 6.
 """
@@ -13,7 +13,9 @@ from typing import Literal
 
 import numpy as np
 
-from stribeck.asymptotics.dry.rest import (
+from stribeck.asymptotics.formula import Limit, Value, fluid_number, formula
+from stribeck.asymptotics.perturbation import PhiForm, phi_of, pressure_moment, shear
+from stribeck.asymptotics.rest import (
     central_gap,
     central_gap_small_indentation,
     contact_pressure_small_indentation,
@@ -22,8 +24,6 @@ from stribeck.asymptotics.dry.rest import (
     offset,
     offset_small_indentation,
 )
-from stribeck.asymptotics.formula import Limit, Value, fluid_number, formula
-from stribeck.asymptotics.rough.perturbation import PhiForm, phi_of, pressure_moment, shear, smoother
 from stribeck.contacts.groups import Groups
 
 __all__ = [
@@ -48,18 +48,12 @@ SLOW_RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-3), Li
 SMALL_SHARE_RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 0.01))
 
 
-def _slower(fluid_number: float) -> Groups:
-    return Groups(fluid_number * 1e-12, 0.1, 1e-7)
-
-
 _slow = partial(
     formula,
     plane="mixed",
     limits=SMALL_SHARE_RANGE,
     small="relative_roughness",
     error_order=2 / 3,
-    approach=smoother(1e-3),
-    steps=(1e-3, 1e-4, 1e-5),
 )
 
 
@@ -69,7 +63,7 @@ def fluid_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bool
 
     .. math:: \frac{F_f}{F_N} = \frac{\lambda^2}{\kappa^4} \, \phi(\bar F_N)
 
-    form : Form of :func:`stribeck.asymptotics.rough.perturbation.phi`; "printed" is :math:`(-\ln \bar F_N)^5/2`.
+    form : Form of :func:`stribeck.asymptotics.perturbation.phi`; "printed" is :math:`(-\ln \bar F_N)^5/2`.
     printed :
         With the factors of Eq. (fluid-normal): pi**2, as :math:`6 \pi \eta U a` is printed for :math:`6 \eta U a`, and phi
         without its 2/pi.
@@ -90,8 +84,6 @@ def fluid_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bool
     worst=0.017,
     small="fluid_number",
     error_order=4,
-    approach=_slower,
-    steps=(2.0, 1.0, 0.5),
     source="[BP] Eq. (friction_contact)",
 )
 def contact_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bool = False) -> Value:
@@ -119,7 +111,7 @@ def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "publ
     [BP] state only that it goes as :math:`\eta U a/(F_N h_\mathrm{rms})`, which is true of the balanced definition; by their
     own it is larger by :math:`6 M/(S \kappa)`, 0.0701/kappa at load 0.1.
 
-    S and M are :func:`stribeck.asymptotics.rough.perturbation.shear` and ``pressure_moment``.
+    S and M are :func:`stribeck.asymptotics.perturbation.shear` and ``pressure_moment``.
     """
     F, kappa = groups.load, np.asarray(groups.relative_roughness)
     if viscous == "neglected":

@@ -15,22 +15,12 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.judged import around, smooth_line
-from stribeck.asymptotics.smooth.half_line import HalfLine, Layer
+from stribeck.asymptotics.half_line import HalfLine, Layer
 from stribeck.contacts.groups import Groups
 from stribeck.numerics.newton import Dense, StepControl, root_find
 from stribeck.numerics.threads import one_blas_thread
 
 SLOW_RANGE = (Limit("speed", 1e-10, 1e-3),)
-LAYER_WIDTHS = 5.0  # Distance from the edge [layer widths] to which the fields are compared with the solver.
-ORDER_SPEEDS = (1e-5, 1e-6, 1e-7, 1e-8)
-
-
-def _width(groups: Groups) -> Value:
-    return LAYER_WIDTHS * groups.speed**0.4
-
-
-_at_inlet, _at_outlet = around(-1.0, _width), around(1.0, _width)
 
 
 _layer = partial(
@@ -40,13 +30,11 @@ _layer = partial(
     limits=SLOW_RANGE,
     small="speed",
     error_order=0.4,
-    approach=smooth_line,
-    steps=ORDER_SPEEDS,
     source="[BP] Section 'Smooth limit', after Snoeijer, Eggers and Venner (2013); solved here",
 )
 
 
-@_layer(predicts="gap", worst=0.04, interval=_at_inlet)
+@_layer(predicts="gap", worst=0.04)
 def gap_inlet(groups: Groups, x: Value) -> Value:
     r"""Return the gap of a slow smooth film at its inlet.
 
@@ -57,7 +45,7 @@ def gap_inlet(groups: Groups, x: Value) -> Value:
     return groups.speed**0.6 * inlet().gap(np.divide(np.subtract(-1.0, x), groups.speed**0.4))
 
 
-@_layer(predicts="gap", worst=0.055, interval=_at_outlet)
+@_layer(predicts="gap", worst=0.055)
 def gap_outlet(groups: Groups, x: Value) -> Value:
     r"""Return the gap of a slow smooth film at its outlet.
 
@@ -69,7 +57,7 @@ def gap_outlet(groups: Groups, x: Value) -> Value:
     return groups.speed**0.6 * outlet().gap(np.divide(np.subtract(x, 1.0), groups.speed**0.4))
 
 
-@_layer(predicts="fluid_pressure", worst=0.09, interval=_at_inlet)
+@_layer(predicts="fluid_pressure", worst=0.09)
 def fluid_pressure_inlet(groups: Groups, x: Value) -> Value:
     r"""Return the fluid pressure of a slow smooth film at its inlet.
 
@@ -80,7 +68,7 @@ def fluid_pressure_inlet(groups: Groups, x: Value) -> Value:
     return groups.speed**0.2 * inlet().pressure(np.divide(np.subtract(-1.0, x), groups.speed**0.4))
 
 
-@_layer(predicts="fluid_pressure", worst=0.095, interval=_at_outlet)
+@_layer(predicts="fluid_pressure", worst=0.095)
 def fluid_pressure_outlet(groups: Groups, x: Value) -> Value:
     r"""Return the fluid pressure of a slow smooth film at its outlet.
 

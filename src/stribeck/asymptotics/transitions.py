@@ -1,7 +1,7 @@
 """The transitions along a Stribeck curve: its minimum, where boundary lubrication ends, and where both lines meet.
 
 [BP] predict the minimum by theory.md Eq. (14), which is exact for vanishing roughness, and slow to become so; ours is the
-minimum of :func:`stribeck.asymptotics.rough.mixed.friction`, found numerically.
+minimum of :func:`stribeck.asymptotics.mixed.friction`, found numerically.
 
 Source: [BP] Sections "Hydrodynamic-to-mixed lubrication transition", "Boundary-to-mixed lubrication transition", "Conclusion".
 """
@@ -14,12 +14,13 @@ from functools import partial
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asymptotics import mixed
 from stribeck.asymptotics.constants import FILM_CONSTANT, PRINTED_FILM_CONSTANT
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.rough import mixed
-from stribeck.asymptotics.rough.mixed import lambert_w
-from stribeck.asymptotics.rough.perturbation import phi_of
-from stribeck.asymptotics.rough.weakening import (
+from stribeck.asymptotics.hydrodynamic import central_gap
+from stribeck.asymptotics.mixed import lambert_w
+from stribeck.asymptotics.perturbation import phi_of
+from stribeck.asymptotics.weakening import (
     MAX_WEAKENING,
     Criterion,
     Form,
@@ -28,7 +29,6 @@ from stribeck.asymptotics.rough.weakening import (
     roughness_without_minimum,
     weakening_number,
 )
-from stribeck.asymptotics.smooth.hydrodynamic import central_gap
 from stribeck.contacts.groups import Groups
 
 __all__ = [
@@ -64,7 +64,7 @@ def separation_at_minimum(
         \Lambda_\mathrm{expansion} = -\ln k + \tfrac13 \ln(-\ln k), \qquad \Lambda_\mathrm{leading} = -\ln k
 
     form :
-        ``"uniform"``: the minimum of :func:`stribeck.asymptotics.rough.mixed.friction`, and
+        ``"uniform"``: the minimum of :func:`stribeck.asymptotics.mixed.friction`, and
         :func:`~stribeck.asymptotics.hydrodynamic.central_gap` there.  The others: [BP]'s friction, in Lambert's W, its
         expansion for small k, and the first term of that.
     printed : Whether the expansion with the constant 0.44 as printed.
@@ -133,7 +133,7 @@ def friction_at_minimum(
 
     form :
         Of Lambda, as in :func:`separation_at_minimum`; for ``"uniform"`` the friction of
-        :func:`stribeck.asymptotics.rough.mixed.friction` at its minimum.
+        :func:`stribeck.asymptotics.mixed.friction` at its minimum.
     printed : Whether as printed: the leading form with the constant 0.44 and Lambda to the power -2/3 for 2/3.
 
     Against the solver, in the range: ``"uniform"`` within 1.1 % for beta/mu0 = 1 and 4.9 % for 1e-3, 0.1 and 0.6 % in the

@@ -18,7 +18,7 @@ import scipy
 from stribeck._types import Array
 from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.smooth.hydrodynamic import central_gap, central_gap_large, friction_large, friction_uniform
+from stribeck.asymptotics.hydrodynamic import central_gap, central_gap_large, friction_large, friction_uniform
 from stribeck.contacts.groups import Groups
 
 __all__ = ["Film", "contact_load_share", "friction"]

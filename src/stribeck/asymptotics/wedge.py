@@ -84,8 +84,6 @@ def wedge(load: float, fluid_number: float) -> Wedge:
     worst=0.03,
     small="relative_roughness",
     error_order=2 / 3,
-    approach=lambda kappa: Groups(10.0 * kappa**2, 0.1, 0.1 * kappa),
-    steps=(1e-3, 3e-4, 1e-4, 3e-5),
     source="ours, from [BP] Eqs. (thin-film_dl), (contact_pressure_dl), (Hertz)",
 )
 def contact_load_share(groups: Groups) -> Value:

@@ -14,9 +14,9 @@ from typing import Literal
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.asymptotics import hydrodynamic
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.rough.load_sharing import FIT_RANGE, film_speed_ratio, gaps, log_odds
-from stribeck.asymptotics.smooth import hydrodynamic
+from stribeck.asymptotics.load_sharing import FIT_RANGE, film_speed_ratio, gaps, log_odds
 from stribeck.contacts.groups import Groups
 
 Definition = Literal["published", "balanced"]

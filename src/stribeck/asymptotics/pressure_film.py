@@ -17,8 +17,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from stribeck.asymptotics.constants import FILM_CONSTANT
+from stribeck.asymptotics.dry_pressure import DryPressure, rows_of
 from stribeck.asymptotics.formula import OutOfRangeWarning
-from stribeck.asymptotics.smooth.dry_pressure import DryPressure, rows_of
 from stribeck.files.datasets import Column
 from stribeck.files.results import Labelled, Tabled
 from stribeck.quantities.formats import format_percent, format_si

@@ -1,8 +1,8 @@
 r"""Whether friction falls with speed: the weakening number, and the roughness beyond which friction only grows.
 
 The friction of [BP] near its minimum has one on either side of k = 0.4968 or none, see :func:`weakening_number`; ours is
-:func:`stribeck.asymptotics.rough.mixed.friction`, whose minimum is found numerically.
-:mod:`stribeck.asymptotics.rough.transitions` predicts the minimum by both.
+:func:`stribeck.asymptotics.mixed.friction`, whose minimum is found numerically.
+:mod:`stribeck.asymptotics.transitions` predicts the minimum by both.
 
 Source: [BP] Section "Hydrodynamic-to-mixed lubrication transition" and Conclusion.
 """
@@ -15,12 +15,12 @@ from typing import Literal, get_args
 import numpy as np
 
 from stribeck._types import Array, Flags
+from stribeck.asymptotics import mixed
 from stribeck.asymptotics.constants import FILM_CONSTANT, PRINTED_FILM_CONSTANT
 from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Value, coefficient
-from stribeck.asymptotics.rough import mixed
-from stribeck.asymptotics.rough.mixed import lambert_w
-from stribeck.asymptotics.rough.perturbation import phi_of
+from stribeck.asymptotics.mixed import lambert_w
+from stribeck.asymptotics.perturbation import phi_of
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.units import checked_word
 
@@ -61,7 +61,7 @@ def weakening_number(groups: Groups, boundary_friction: float = 1.0, beta: float
     "Of the shape of load and roughness.",
     kind="ndarray of bool",
     source="[BP] Eq. (Lambda_solution), whose condition is not stated there",
-    form='``"uniform"``: by :func:`stribeck.asymptotics.rough.mixed.friction`; the others: by that of [BP], as above.',
+    form='``"uniform"``: by :func:`stribeck.asymptotics.mixed.friction`; the others: by that of [BP], as above.',
 )
 def has_minimum(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, form: Form = "uniform") -> Flags:
     r"""Return whether friction has a minimum over the speed.
@@ -96,7 +96,7 @@ def roughness_without_minimum(
         \Lambda_\mathrm{lines} = 3 W_0\!\left(\tfrac13 \left[\frac{9 c^5 \mu_0}{2 \beta \bar F_N \phi}\right]^{1/3}\right)
 
     criterion :
-        ``"uniform"``: :func:`stribeck.asymptotics.rough.mixed.friction` no longer falls anywhere.
+        ``"uniform"``: :func:`stribeck.asymptotics.mixed.friction` no longer falls anywhere.
         ``"plateau"``: the minimum of [BP]'s friction reaches boundary_friction, what its Conclusion names.
         ``"lines"``: the two transitions of [BP],
         ``speed_boundary_to_mixed`` and ``speed_at_minimum`` (exact), meet, what its Conclusion means by merging.

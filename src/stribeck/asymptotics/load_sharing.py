@@ -15,8 +15,8 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.rough.perturbation import phi_of
-from stribeck.asymptotics.smooth.hydrodynamic import GAP_SLOPE
+from stribeck.asymptotics.hydrodynamic import GAP_SLOPE
+from stribeck.asymptotics.perturbation import phi_of
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.units import InputError, show

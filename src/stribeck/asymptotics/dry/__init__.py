@@ -1,1 +1,0 @@
-"""Contacts without a fluid: Hertz, and rough contacts at rest."""

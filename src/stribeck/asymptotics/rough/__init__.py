@@ -1,1 +1,0 @@
-"""Asperities and fluid together: boundary and mixed lubrication, transitions, the uniform friction law."""

@@ -1,1 +1,0 @@
-"""Films without asperities: inlet and outlet layers, thin films, rigid bodies."""
