@@ -376,7 +376,7 @@ def test_a_file_that_is_no_table_is_refused_with_its_line(subtests, tmp_path_fac
             "separation, pressure\n0, 1\n1, 0.5\n2; 0.2\n3, 0.1\n",
             "row 4 has 1 cell where the header has 2: the header is separated by commas and this row by semicolons",
         ),
-        ("separation, pressure\n0, 1\n1, x\n2, 0.2\n3, 0.1\n", "line 3, column 2 is 'x', not a number"),
+        ("separation, pressure\n0, 1\n1, x\n2, 0.2\n3, 0.1\n", "row 3, column 'pressure': 'x' is not a number"),
         ("separation, pressure\n0, 1\n1, 0.5, 3\n", "row 3 has 3 cells where the header has 2; use one separator"),
         ("gap [um], pressure [m]\n0, 1\n", "^pressure = '1 m' is a length"),
         ("gap [um], pressure\n0, 1\n", "the header is 'gap \\[um\\], pressure'"),

@@ -76,9 +76,9 @@ def test_tables_are_read_as_programs_write_them(capsys, tmp_path, subtests):
     ("text", "said"),
     [
         ("", "holds no data"),
-        ("x;p\n0;1\n1;2\n", "no column of positions, a length,"),
-        ("x [mm];p [N]\n0;1\n1;2\n", "no column of pressures"),
-        ("x [mm];y [mm];p [MPa]\n0;1;2\n1;2;3\n", "2 columns of positions"),
+        ("x;p\n0;1\n1;2\n", "none of which is the position"),
+        ("x [mm];p [N]\n0;1\n1;2\n", "none of which is the pressure"),
+        ("x [mm];y [mm];p [MPa]\n0;1;2\n1;2;3\n", "2 of which may be the position"),
         ("x [mm];p [MPa]\n0;0\n1;-2\n2;1\n", "negative at x = 0.001 m"),
         ("x [mm];p [MPa]\n0;0\n1;\n2;1\n", "not a number"),
         ("x [mm];p [MPa]\n0;0\n1;2\n2;0\n", "rows between the left edge"),

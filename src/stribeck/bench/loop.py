@@ -4,24 +4,25 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 
 from stribeck._types import Array, Indices
-from stribeck.files.cells import is_named, split_header
-from stribeck.files.text_table import TextTable, read_table, values_of
+from stribeck.files.columns import Column, read_columns
 from stribeck.files.writing import PathLike, path_of
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.units import InputError
 
 __all__ = ["Loop", "read_loop"]
 
-# Headers of each column, and the dimension of what it holds.
-COLUMNS = {
-    "position": (r"position|displacement|path|stroke position|weg|x", "length"),
-    "time": (r"(?:(?:elapsed|test|total|cycle) )?(?:time|zeit)|t", "time"),
-    "friction": (r"friction|friction coefficient|coefficient of friction|cof|mu|reibwert", "number"),
+FRICTION = Column(r"friction|friction coefficient|coefficient of friction|cof|mu|reibwert", "number")
+
+# What friction may be measured over, the first that is there
+OVER = {
+    "time": Column(r"(?:(?:elapsed|test|total|cycle) )?(?:time|zeit)|t", "time", is_bare=True),
+    "position": Column(r"position|displacement|path|stroke position|weg|x", "length", is_bare=True),
 }
+
+ADVICE = "a loop has a column 'friction', with the sign of the force against the motion, and one 'position [mm]' or 'time [s]'"
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +30,7 @@ class Loop:
     """The rows of a measured friction loop."""
 
     path: str
-    over: Literal["position", "time"]  # What friction was measured over
+    over: str  # "position" or "time", what friction was measured over
     values: Array  # [m or s]
     friction: Array  # With the sign of the force against the motion [-]
     rows: Indices  # Row of the file in which each stands
@@ -44,26 +45,9 @@ def read_loop(path: PathLike) -> Loop:
     path = path_of(path)
     if not Path(path).is_file():
         raise InputError(f"{path}: there is no such file.")
-    table = read_table(path, expected="the first line must name the columns, as 'position [mm], friction'")
-    columns = {name: column for name in COLUMNS if (column := _column(table, name)) is not None}
-    if "friction" not in columns or len(columns) < 2:
-        raise InputError(
-            f"{path}: the header is {show(', '.join(table.header))}; a loop has a column 'friction', with the sign of the "
-            "force against the motion, and one 'position [mm]' or 'time [s]'."
-        )
-    over: Literal["position", "time"] = "time" if "time" in columns else "position"
-    wanted = [columns[over], columns["friction"]]
-    cells = [[row[k] for k in wanted] for row in table.rows]
-    comma = table.decimal_comma([table.header[k] for k in wanted])
-    values = values_of(path, cells, table.numbers, comma=comma)
-    there = np.isfinite(values).all(axis=1)
-    unit = split_header(table.header[columns[over]])[1] or table.unit(table.header[columns[over]])
-    factor = to_si(f"1 {unit}", COLUMNS[over][1], over) if unit else 1.0
-    friction = values[there, 1]
+    found, rows = read_columns(path, ADVICE, *({name: over, "friction": FRICTION} for name, over in OVER.items()), gaps=True)
+    friction = found.pop("friction")
+    [(over, values)] = found.items()
     if not (np.any(friction > 0) and np.any(friction < 0)):
         raise InputError(f"{path}: friction has one sign; a loop has friction of the way back below zero.")
-    return Loop(str(path), over, factor * values[there, 0], friction, np.array(table.numbers)[there])
-
-
-def _column(table: TextTable, name: str) -> int | None:
-    return next((k for k, header in enumerate(table.header) if is_named(header, COLUMNS[name][0])), None)
+    return Loop(str(path), over, values, friction, rows)

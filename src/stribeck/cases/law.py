@@ -133,11 +133,13 @@ def _of_spectrum(entries: dict[str, Any], folder: Path) -> tuple[Array, Array]:
     path = _file_of("surface", entries, folder)
     if path is None:
         return _lists("surface", entries)
-    from stribeck.files.text_table import read_two_columns  # slow to import, and most cases name no file
+    from stribeck.files.columns import Column, read_columns  # slow to import, and most cases name no file
 
-    rows, units = read_two_columns(path, None, {"wavenumber": "wavenumber", "density": "spectral density"})
-    assert units is not None
-    return rows[:, 0] * units[0], rows[:, 1] * units[1]
+    columns = {"wavenumber": Column("wave ?number|q", "wavenumber"), "density": Column("density", "spectral density")}
+    found, _ = read_columns(
+        path, "the first line must be 'wavenumber [1/m], density [m^4]', with the units of the file", columns
+    )
+    return found["wavenumber"], found["density"]
 
 
 def _of_asperities(law: Law, entries: dict[str, Any], contact: dict[str, Any], folder: Path) -> Made:

@@ -16,7 +16,6 @@ from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.units import InputError, checked_word, show, to_si
 
 if TYPE_CHECKING:
-    from stribeck._types import Array
     from stribeck.asymptotics.pressure_film import Inlet, PressureFilm
 
 Given = Annotated[float | str, Parameter(allow_leading_hyphen=True)]
@@ -50,6 +49,7 @@ def leak_command(
     With --diameter and --stroke the answer is a volume too.
     """
     from stribeck.asymptotics import OutOfRangeWarning, film_of_pressure
+    from stribeck.files.columns import Column, read_columns
 
     side = checked_word("oil", oil, ("left", "right"))
     speeds = to_si(out_speed, "speed", "out_speed"), to_si(in_speed, "speed", "in_speed")
@@ -60,7 +60,8 @@ def leak_command(
     swept = math.pi * math.prod(lengths) if lengths else math.nan
     if min(speeds) <= 0:
         raise InputError(f"out_speed = {show(out_speed)} and in_speed = {show(in_speed)} must be above zero.")
-    x, p = _read_pressure(pressure)
+    columns = {"position": Column(".*", "length"), "pressure": Column(".*", "pressure")}  # by their units
+    x, p = read_columns(pressure, HEADER, columns)[0].values()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", OutOfRangeWarning)  # a note says it
         found = film_of_pressure(x, p, modulus=modulus, viscosity=viscosity, speed=speeds if side == "left" else speeds[::-1])
@@ -112,29 +113,3 @@ def _lines(found: PressureFilm, net: float, inlets: dict[str, Inlet], swept: flo
     yield from table_lines(films, right=(1, 2, 3, 4, 5))
     yield from table_lines(edges, right=(1, 2, 3, 4, 5, 6))
     yield from (f"Note: {note}" for note in found.notes)
-
-
-def _read_pressure(path: Path) -> tuple[Array, Array]:
-    """Return positions and pressures of a file in SI units; the units of its header say which columns they are."""
-    from stribeck.files.text_table import read_table, values_of
-
-    table = read_table(path, expected=HEADER)
-    columns = []
-    for kind, noun in (("length", "positions, a length,"), ("pressure", "pressures")):
-        named = [name for name in table.header if name and table.unit(name) and _is(kind, table.unit(name))]
-        if len(named) != 1:
-            listed = f"{len(named)} columns of {noun} ({', '.join(map(show, named))})" if named else f"no column of {noun}"
-            raise InputError(f"{path} has {listed} among {show(', '.join(table.header))}; keep one, and {HEADER}.")
-        cells = [(cell,) for cell in table.column(named[0])]
-        values = values_of(path, cells, table.numbers, comma=table.decimal_comma(named), missing=False)
-        columns.append(values[:, 0] * to_si(f"1 {table.unit(named[0])}", kind, named[0]))
-    return columns[0], columns[1]
-
-
-def _is(kind: str, unit: str) -> bool:
-    """Return whether a unit is one of a kind of quantity."""
-    try:
-        to_si(f"1 {unit}", kind, "unit")
-    except InputError:
-        return False
-    return True

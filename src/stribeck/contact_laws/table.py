@@ -26,8 +26,7 @@ __all__ = ["TableLaw"]
 
 MIN_ROWS = 4  # Least rows of a tabulated law.
 
-PLAIN, WITH_UNITS = ("separation", "pressure"), {"gap": "length", "pressure": "pressure"}
-"""Headers of a file."""
+HEADERS = "the first line must be 'separation, pressure', or with units such as 'gap [mm], pressure [MPa]'"
 
 # Factor by which the slope between two rows may leave the straight lines around it: a monotone cubic keeps to it, and a
 # smoother interpolant is refused where it does not.
@@ -105,11 +104,13 @@ class TableLaw:
         InputError
             If the file cannot be read or is no such table; the sentence names line and column.
         """
-        from stribeck.files.text_table import read_two_columns  # slow to import, and most laws have no file
+        from stribeck.files.columns import Column, read_columns  # slow to import, and most laws have no file
 
-        rows, units = read_two_columns(Path(path), PLAIN, WITH_UNITS)
-        s, p = rows[:, 0], rows[:, 1]
-        if units is not None:
+        plain = {"separation": Column("separation", "number"), "pressure": Column("pressure", "number")}
+        with_units = {"gap": Column("gap", "length"), "pressure": Column("pressure", "pressure")}
+        found, _ = read_columns(path, HEADERS, plain, with_units)
+        s, p = found.values()
+        if "gap" in found:
             needed = {"alpha": alpha, "beta": beta, "roughness": roughness, "modulus": modulus}
             missing = [name for name, value in needed.items() if not value]
             if missing:
@@ -117,7 +118,7 @@ class TableLaw:
                     f"{path} has units, so that {' and '.join(missing)} of the contact must be given and positive."
                 )
             assert alpha and beta and roughness and modulus
-            s, p = s * (units[0] * alpha / roughness), p * (units[1] / (beta * modulus))
+            s, p = s * (alpha / roughness), p / (beta * modulus)
         try:
             return cls(s, p, title=Path(path).name)
         except InputError as problem:

@@ -15,7 +15,7 @@ from stribeck.cases.case import Case
 from stribeck.cases.reading import check_case
 from stribeck.files.cells import split_header
 from stribeck.files.results import Exported, Labelled
-from stribeck.files.text_table import TextTable, read_table, values_of
+from stribeck.files.text_table import TextTable, read_table
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import PathLike, path_of
 from stribeck.quantities.formats import format_percent
@@ -311,20 +311,17 @@ def _rows(table: TextTable) -> tuple[tuple[str, ...], tuple[dict[str, Any], ...]
         raise InputError(f"{table.path} needs one column {missing} among {show(', '.join(table.header))}.")
     texts = [name for name in (ROW,) if name in names]
     columns = {name: column for name, column in names.items() if name not in texts}
-    cells = list(zip(*(table.column(each) for each in columns.values()), strict=True))
-    comma = table.decimal_comma(list(columns.values()))
-    numbers = values_of(Path(table.path), cells, table.numbers, comma=comma, missing=False)
-    read = dict(zip(columns, numbers.T, strict=True))
+    read = {name: table.numbers_of(column, gaps=False) for name, column in columns.items()}
     units = {name: table.unit(column) for name, column in columns.items()}
     inputs = [name for name in columns if name not in (*measured, ERROR)]
     varied = tuple(
         {name: f"{float(read[name][i])!r} {units[name]}" if units[name] else float(read[name][i]) for name in inputs}
-        for i in range(len(numbers))
+        for i in range(len(table.rows))
     )
     for name in (*measured, ERROR):
         if not (np.isfinite(read[name]).all() and (read[name] > 0).all()):
             raise InputError(f"{table.path}: {name} must be positive in every row.")
-    labels = tuple(table.column(names[ROW])) if texts else tuple(map(str, range(1, len(numbers) + 1)))
+    labels = tuple(table.column(names[ROW])) if texts else tuple(map(str, range(1, len(table.rows) + 1)))
     is_force = measured[0] == FORCE
     factors = [to_si(f"1 {units[each]}", "force", each) if is_force else 1.0 for each in (*measured, ERROR)]
     return labels, varied, read[measured[0]] * factors[0], read[ERROR] * factors[1], is_force

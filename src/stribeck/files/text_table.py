@@ -24,7 +24,7 @@ from stribeck.files.cells import (
 from stribeck.files.headings import Heading, Line, headings_in
 from stribeck.files.reading import text_of
 from stribeck.files.spreadsheet import SPREADSHEET_ENDINGS, sheets_of
-from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
+from stribeck.quantities.units import InputError, show
 
 SEPARATORS = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar"}
 
@@ -43,7 +43,7 @@ SAMPLE_ROWS = 200  # Rows of each table by which tables are compared
 
 SETTING_RTOL = 0.05  # Relative difference of numbers up to which a column has only one setting
 
-_NAMED = re.compile(r"\s*([^\[\](),;]*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
+_THOUSANDS = re.compile(r"[+-]?[0-9]{1,3}(?:[,.' ][0-9]{3})+(?:[.,][0-9]+)?")
 _PLUS_MINUS = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
 
 
@@ -98,6 +98,38 @@ class TextTable:
         decimal = "," if self.decimal_comma([name]) else "."
         read = [None if cell.lower() in MISSING_CELLS else number_of(cell, decimal) for cell in self.column(name)]
         return np.array([np.nan if each is None else each[0] for each in read])
+
+    def numbers_of(
+        self, name: str, factor: Callable[[str, str], float] | None = None, *, unit: str = "", gaps: bool = True
+    ) -> Array:
+        """Return the numbers of a column, NaN where a cell is empty if it may have gaps; refuse text.
+
+        ``factor`` of the unit of a cell, or else of the column (``unit`` or that of the table), and of where it stands is what
+        a number counts; without it numbers are as written and have no units of their own.
+        """
+        decimal = "," if self.decimal_comma([name]) else "."
+        column = f"{self.path}: column {show(name)}"
+        usual = 1.0 if factor is None else None
+        found = np.full(len(self.rows), np.nan)
+        for i, cell in enumerate(self.column(name)):
+            if gaps and cell.lower() in MISSING_CELLS:
+                continue
+            where = f"{self.path}: row {self.numbers[i]}, column {show(name)}"
+            read = number_of(cell, decimal)
+            if read is None or (read[1] and factor is None):
+                advice = "leave the cell empty where a value is missing" if gaps else "each row needs a number"
+                if _THOUSANDS.fullmatch(cell):
+                    advice = "write it without marks between thousands"
+                raise InputError(f"{where}: {show(cell)} is not a number; {advice}.")
+            number, own = read
+            if own and factor is not None:
+                found[i] = number * factor(own, where)
+                continue
+            if usual is None:
+                assert factor is not None
+                usual = factor(unit or self.unit(name), column)
+            found[i] = number * usual
+        return found
 
     def with_column(self, name: str, cells: Sequence[str]) -> Self:
         """Return the table with one more column."""
@@ -184,47 +216,6 @@ def read_table(
         notes=notes,
     )
     return _split_errors(_drop_repeated_columns(_stack_curves(table, labels)))
-
-
-def read_two_columns(
-    path: Path, plain: tuple[str, str] | None, with_units: dict[str, str]
-) -> tuple[Array, tuple[float, float] | None]:
-    """Return the numbers of a file."""
-    example = ", ".join(f"{name} [{DIMENSIONS[kind].example.split()[1]}]" for name, kind in with_units.items())
-    advice = f"the first line must be {show(example)}, with the units of the file"
-    if plain is not None:
-        advice = f"the first line must be {show(', '.join(plain))}, or with units such as {show(example)}"
-    table = read_table(path, expected=advice)
-    found = [_NAMED.fullmatch(cell) for cell in table.header]
-    names = tuple(match[1].strip().lower() if match else "" for match in found)
-    units = [
-        (match[2] if match else None) or table.unit(name) or None for match, name in zip(found, table.header, strict=True)
-    ]
-    values = values_of(path, table.rows, table.numbers, comma=table.decimal_comma(table.header), missing=False)
-    if names == plain and units == [None, None]:
-        return values, None
-    if names != tuple(with_units) or not all(units):
-        raise InputError(f"{path}: the header is {show(', '.join(table.header))}; {advice}.")
-    kinds = zip(units, with_units.values(), names, strict=True)
-    first, second = (to_si(f"1 {unit}", kind, name) for unit, kind, name in kinds)
-    return values, (first, second)
-
-
-def values_of(
-    path: Path, rows: Sequence[Sequence[str]], numbers: Sequence[int], *, comma: bool, missing: bool = True
-) -> Array:
-    """Return the numbers in rows of cells, NaN where a cell holds no value if it may be ``missing``."""
-    values = np.empty((len(rows), len(rows[0]) if rows else 0))
-    for k, row in enumerate(rows):
-        for j, cell in enumerate(row):
-            try:
-                values[k, j] = float(cell.replace(",", ".") if comma else cell)
-            except ValueError:
-                if not (missing and cell.lower() in MISSING_CELLS):
-                    where = f"{path}: line {numbers[k]}, column {j + 1}"
-                    raise InputError(f"{where} is {show(cell)}, not a number.") from None
-                values[k, j] = np.nan
-    return values
 
 
 def _sheet(path: Path, wanted: str | None, knows: Callable[[str], bool]) -> tuple[str, list[Line], tuple[str, ...]]:

@@ -30,7 +30,7 @@ from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.schema import numbers_of
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.units import InputError, show
 
 __all__ = ["FlowCurve", "flow_curve", "read_flow_curve"]
 
@@ -219,16 +219,16 @@ def read_flow_curve(path: str | os.PathLike[str], *, law: str | None = None) -> 
     InputError
         Where the file cannot be read or has no such columns, or its values allow no fit.
     """
-    from stribeck.files.named_columns import read_named_columns  # slow to import, and most fluids have no file
+    from stribeck.files.columns import Column, read_columns  # slow to import, and most fluids have no file
 
     advice = "name the columns 'shear rate [1/s]' and 'viscosity [mPa*s]', with the units of the file"
     columns = {
-        "rate": r"(shear |strain )?rate( of shear)?|shearrate|gamma dot|gammadot|scherrate|d",
-        "viscosity": r"(shear |dynamic |apparent )?viscosity|eta|viskosität",
+        "shear rate": Column(r"(shear |strain )?rate( of shear)?|shearrate|gamma dot|gammadot|scherrate|d", "rate"),
+        "viscosity": Column(r"(shear |dynamic |apparent )?viscosity|eta|viskosität", "viscosity"),
     }
-    rate, viscosity = read_named_columns(path, columns, advice, lambda kind, unit, name: to_si(f"1 {unit}", kind, name))
+    found, _ = read_columns(path, advice, columns, gaps=True)
     try:
-        return flow_curve(rate, viscosity, law=law)
+        return flow_curve(found["shear rate"], found["viscosity"], law=law)
     except InputError as problem:
         raise InputError(f"{path}: {problem}") from None
 

@@ -202,8 +202,8 @@ def from_pressure(x: Any, p: Any, modulus: str | float, reversed: bool = False) 
 
 def _columns_of(path: Path) -> tuple[Array, Array]:
     """Return positions and heights from a file [m]."""
-    from stribeck.files.text_table import read_two_columns  # slow to import, and most shapes name no file
+    from stribeck.files.columns import Column, read_columns  # slow to import, and most shapes name no file
 
-    rows, units = read_two_columns(path, None, {"x": "length", "z": "length"})
-    scale = (1.0, 1.0) if units is None else units
-    return rows[:, 0] * scale[0], rows[:, 1] * scale[1]
+    columns = {name: Column(name, "length") for name in ("x", "z")}
+    found, _ = read_columns(path, "the first line must be 'x [mm], z [mm]', with the units of the file", columns)
+    return found["x"], found["z"]

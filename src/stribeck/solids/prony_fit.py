@@ -26,7 +26,7 @@ from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.schema import Input
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.units import InputError
 from stribeck.solids.viscoelastic import MAX_TERMS, Prony
 
 __all__ = ["PronyFit", "fit_prony", "from_master_curve"]
@@ -240,26 +240,20 @@ def from_master_curve(path: str | os.PathLike[str], *, poisson_ratio: float = 0.
     InputError
         Where the file cannot be read or has no such columns, or its values allow no fit.
     """
-    from stribeck.files.named_columns import read_named_columns  # slow to import, and most solids have no file
+    from stribeck.files.columns import Column, read_columns  # slow to import, and most solids have no file
 
     advice = "name the columns 'frequency [Hz]', 'storage modulus [MPa]' and 'loss modulus [MPa]', with the units of the file"
+    units = {"Hz": 2 * math.pi, "kHz": 2e3 * math.pi, "MHz": 2e6 * math.pi, "rad/s": 1.0, "1/s": 1.0}
     columns = {
-        "frequency": r"(angular |reduced |shifted )?(frequency|freq)|omega|ω|f|frequenz|kreisfrequenz",
-        "storage modulus": r"(tensile |young s )?storage( modulus)?|e'|e′|e storage|speichermodul",
-        "loss modulus": r"(tensile |young s )?loss( modulus)?|e''|e″|e′′|e\"|e loss|verlustmodul",
+        "frequency": Column(
+            r"(angular |reduced |shifted )?(frequency|freq)|omega|ω|f|frequenz|kreisfrequenz", "rotation", units
+        ),
+        "storage modulus": Column(r"(tensile |young s )?storage( modulus)?|e'|e′|e storage|speichermodul", "pressure"),
+        "loss modulus": Column(r"(tensile |young s )?loss( modulus)?|e''|e″|e′′|e\"|e loss|verlustmodul", "pressure"),
     }
-
-    def factor(kind: str, unit: str, name: str) -> float:
-        if kind != "frequency":
-            return to_si(f"1 {unit}", "pressure", name)
-        found = {"rad/s": 1.0, "1/s": 1.0, "Hz": 2 * math.pi, "kHz": 2e3 * math.pi, "MHz": 2e6 * math.pi}.get(unit)
-        if found is None:
-            raise InputError(f"the unit {show(unit)} of the column {show(name)} is not one of Hz, kHz, MHz, rad/s; {advice}.")
-        return found
-
-    omega, storage, loss = read_named_columns(path, columns, advice, factor)
+    found, _ = read_columns(path, advice, columns, gaps=True)
     try:
-        return fit_prony(omega, storage, loss, poisson_ratio=poisson_ratio)
+        return fit_prony(*found.values(), poisson_ratio=poisson_ratio)
     except InputError as problem:
         raise InputError(f"{path}: {problem}") from None
 

@@ -18,7 +18,6 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.files.cells import MISSING_CELLS, NUMBER_WITH_POINT, cells_of
 from stribeck.files.reading import text_of
-from stribeck.files.text_table import values_of
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.text_header import Header, header_of, unit_of
 from stribeck.surfaces.topography import MIN_POINTS, Topography
@@ -379,7 +378,7 @@ def _values(
     path: Path, cells: list[list[str]], numbers: list[int], *, comma: bool, codes: tuple[str, ...]
 ) -> tuple[Array, list[str]]:
     """Return the numbers in cells, NaN where they hold no height, and which codes stand for that."""
-    values = values_of(path, [["nan" if _is_missing(cell) else cell for cell in row] for row in cells], numbers, comma=comma)
+    values = _numbers(path, [["nan" if _is_missing(cell) else cell for cell in row] for row in cells], numbers, comma=comma)
     # Positions are left as they are: only heights may be missing.
     z = values if values.shape[1] > 3 else values[:, -1]
     beyond = ~np.isfinite(z) & ~np.isnan(z) | (np.abs(z) >= MAX_NUMBER)
@@ -397,6 +396,21 @@ def _values(
             notes.append(_missing_note(int(here.sum()), "hold", f"{code:g}, a code for no height,"))
             z[here] = np.nan
     return values, notes
+
+
+def _numbers(path: Path, rows: Sequence[Sequence[str]], numbers: Sequence[int], *, comma: bool) -> Array:
+    """Return the numbers in rows of cells, NaN where a cell holds no value."""
+    values = np.empty((len(rows), len(rows[0]) if rows else 0))
+    for k, row in enumerate(rows):
+        for j, cell in enumerate(row):
+            try:
+                values[k, j] = float(cell.replace(",", ".") if comma else cell)
+            except ValueError:
+                if cell.lower() not in MISSING_CELLS:
+                    where = f"{path}: line {numbers[k]}, column {j + 1}"
+                    raise InputError(f"{where} is {show(cell)}, not a number.") from None
+                values[k, j] = np.nan
+    return values
 
 
 def _missing_note(count: int, verb: str, what: str) -> str:

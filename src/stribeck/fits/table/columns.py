@@ -12,9 +12,9 @@ import numpy as np
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.geometries import LINE
 from stribeck.files.cells import is_called, is_named, normalised_header, number_of, split_header
+from stribeck.files.columns import BARE, has_dimension
 from stribeck.files.text_table import TextTable, as_comparable
 from stribeck.fits.table.rig import MADE_FRICTION, MADE_RATIO, MADE_SPEED, PATTERNS, RIG, is_mean_of_time, is_set
-from stribeck.fits.table.units import BARE, DIMENSION, has_dimension
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["ABSCISSAS", "Abscissa", "abscissa_of", "columns_of", "has_column", "known_name", "with_errors_named"]
@@ -22,6 +22,9 @@ __all__ = ["ABSCISSAS", "Abscissa", "abscissa_of", "columns_of", "has_column", "
 Abscissa = Literal["speed", "speed_viscosity", "hersey_number", "hersey_per_length"]
 
 ABSCISSAS: tuple[Abscissa, ...] = ("speed", "speed_viscosity", "hersey_number")
+
+# Dimension of what a column may hold beside inputs of the contact.
+DIMENSION = {"speed": "speed", "speed_viscosity": "drag", "hersey_number": "number", "friction": "number", "error": "number"}
 
 # Headers of a speed that say that it is the sum.
 SUMS = {"sum of speeds", "sum of the speeds", "sum of the surface speeds", "u1 u2"}

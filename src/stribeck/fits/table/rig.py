@@ -16,10 +16,10 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import MISSING_CELLS, is_called, is_named, normalised_header, number_of, split_header
+from stribeck.files.cells import is_called, is_named, normalised_header, number_of, split_header
+from stribeck.files.columns import BARE, has_dimension, si_factor
 from stribeck.files.text_table import TextTable
 from stribeck.fits.table.correlated import FEWEST
-from stribeck.fits.table.units import BARE, has_dimension, si_factor
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["MADE_FRICTION", "MADE_SPEED", "RIG", "column_of", "measured", "prepared", "temperature_note", "temperatures"]
@@ -316,7 +316,7 @@ def _friction(table: TextTable, found: dict[str, list[str]], settings: FitSettin
         normal = found["normal_force"][0]
         units = {unit_in(table, force, "friction_force", settings), unit_in(table, normal, "normal_force", settings)}
         if len(units) == 1 and units != {""}:
-            tangential, pressing = _written(table, force), _written(table, normal)
+            tangential, pressing = (table.numbers_of(name, lambda unit, where: 1.0) for name in (force, normal))
         else:
             tangential, pressing = (
                 _numbers(table, name, meaning, settings)
@@ -360,8 +360,8 @@ def _length(table: TextTable, pattern: str, given: float | None) -> tuple[Array,
         return of_all(given, "of the case")
     for name in filter(None, table.header):
         if is_named(name, pattern) and has_dimension(table.unit(name) or "-", "length"):
-            factor = _radius_of(name) * si_factor(table.unit(name), "length", name)
-            return factor * _written(table, name), f"of column {show(name)}"
+            lengths = table.numbers_of(name, lambda unit, where: si_factor(unit, "length", where))
+            return _radius_of(name) * lengths, f"of column {show(name)}"
     for name in filter(None, table.header):
         for inside in re.findall(r"[\[(]([^\[\]()]*)[\])]", name):
             found = _IN_BRACKETS.fullmatch(inside)
@@ -483,12 +483,13 @@ def _speed_of_rotation(table: TextTable, found: dict[str, list[str]], settings: 
 
 def _ratios(table: TextTable, name: str, settings: FitSettings) -> Array:
     """Return a slide-to-roll ratio as a number; in per cent if its unit says so."""
-    unit = unit_in(table, name, "slide_to_roll", settings)
-    if unit not in BARE:
-        raise InputError(
-            f"{table.path}: column {show(name)} has the unit {show(unit)}; a slide-to-roll ratio is a bare number or in %."
-        )
-    return BARE[unit] * _written(table, name)
+
+    def factor(unit: str, where: str) -> float:
+        if unit not in BARE:
+            raise InputError(f"{where} has the unit {show(unit)}; a slide-to-roll ratio is a bare number or in %.")
+        return BARE[unit]
+
+    return table.numbers_of(name, factor, unit=unit_in(table, name, "slide_to_roll", settings))
 
 
 def _numbers(table: TextTable, name: str, meaning: str, settings: FitSettings) -> Array:
@@ -500,16 +501,7 @@ def _numbers(table: TextTable, name: str, meaning: str, settings: FitSettings) -
         raise InputError(
             f"{table.path}: column {show(name)} has no unit; write it in the header, as in '{name} [{UNITS[dimension]}]'{key}."
         )
-    return si_factor(written, dimension, f"the unit of column {show(name)}") * _written(table, name)
-
-
-def _written(table: TextTable, name: str) -> Array:
-    """Return the numbers of a column as written, NaN where there is none; refuse text."""
-    found = table.values(name)
-    for number, cell, value in zip(table.numbers, table.column(name), found, strict=True):
-        if np.isnan(value) and cell.lower() not in MISSING_CELLS:
-            raise InputError(f"{table.path}: row {number}, column {show(name)}: {show(cell)} is not a number.")
-    return found
+    return table.numbers_of(name, lambda unit, where: si_factor(unit, dimension, f"the unit of {where}"), unit=written)
 
 
 def _texts(values: Array) -> list[str]:

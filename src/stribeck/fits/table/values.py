@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-import math
-import re
-
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import MISSING_CELLS, number_of
+from stribeck.files.columns import BARE, has_dimension, si_factor
 from stribeck.files.text_table import TextTable
-from stribeck.fits.table.columns import ABSCISSAS
-from stribeck.fits.table.units import BARE, DIMENSION, has_dimension, si_factor
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.fits.table.columns import ABSCISSAS, DIMENSION
+from stribeck.quantities.units import InputError, show
 
 __all__ = ["Values"]
-
-THOUSANDS = re.compile(r"[+-]?[0-9]{1,3}(?:[,.' ][0-9]{3})+(?:[.,][0-9]+)?$")
 
 LARGEST_FRICTION = 10.0  # Friction coefficient from which percent are suspected
 
@@ -38,26 +32,8 @@ class Values:
 
     def numbers(self, column: str, meaning: str) -> Array:
         """Return the numbers of a column as they stand."""
-        decimal = "," if self.table.decimal_comma([column]) else "."
-        found = np.full(len(self.table.rows), np.nan)
-        factor = math.nan
-        for i, cell in enumerate(self.table.column(column)):
-            if cell.lower() in MISSING_CELLS:
-                continue
-            read = number_of(cell, decimal)
-            if read is None:
-                thousands = "write it without marks between thousands"
-                advice = thousands if THOUSANDS.match(cell) else "leave the cell empty where a value is missing"
-                raise InputError(f"{self._where(i, column)}: {show(cell)} is not a number; {advice}.")
-            number, unit = read
-            if unit:
-                found[i] = number * self._factor(unit, meaning, self._where(i, column))
-                continue
-            if math.isnan(factor):
-                own = self.settings.units.get(meaning) or self.table.unit(column)
-                factor = self._factor(own, meaning, f"{self.table.path}: column {show(column)}")
-            found[i] = number * factor
-        return found
+        unit = self.settings.units.get(meaning, "")
+        return self.table.numbers_of(column, lambda unit, where: self._factor(unit, meaning, where), unit=unit)
 
     def _where(self, i: int, column: str) -> str:
         return f"{self.table.path}: row {self.table.numbers[i]}, column {show(column)}"
@@ -78,7 +54,7 @@ class Values:
                 else f"{where} has no unit; write it in the header, in brackets, or in [fit.units] under {meaning}."
             )
         try:
-            return to_si(f"1 {unit}", dimension, meaning)
+            return si_factor(unit, dimension, meaning)
         except InputError as problem:
             raise InputError(f"{where}: {str(problem).replace(f'{meaning} = ', 'unit ', 1)}") from None
 

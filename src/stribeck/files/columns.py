@@ -1,0 +1,107 @@
+"""Columns of a table by what they are called, in SI units."""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from stribeck._types import Array, Indices
+from stribeck.files.cells import is_named, split_header
+from stribeck.files.text_table import TextTable, read_table
+from stribeck.files.writing import PathLike, path_of
+from stribeck.quantities.units import InputError, show, to_si
+
+__all__ = ["BARE", "Column", "has_dimension", "read_columns", "si_factor"]
+
+BARE = {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01, "percent": 0.01, "‰": 0.001}  # Units of a bare number
+
+STANDARD_GRAVITY = 9.80665  # [m/s^2]
+
+_MASS = re.compile(r"(?:[mk]?g|gram|gr)f?")
+_TURNS = re.compile(r"(?:r\.?p\.?m\.?|rev(?:olutions)?/min|U/min|1/min|/min|min\^?[-−]1|min⁻¹)", re.IGNORECASE)
+_TURNS_PER_SECOND = re.compile(r"(?:rps|rev/s|U/s|1/s|Hz|s\^?[-−]1|s⁻¹)")
+
+
+@functools.cache
+def has_dimension(unit: str, dimension: str) -> bool:
+    """Return whether a unit is one of a dimension."""
+    try:
+        si_factor(unit, dimension, "unit")
+    except InputError:
+        return False
+    return True
+
+
+def si_factor(unit: str, dimension: str, name: str) -> float:
+    """Return the SI value of a unit; grams press as their weight, and turns are of a shaft."""
+    text = unit.strip()
+    if dimension == "force" and _MASS.fullmatch(text):
+        power = {"m": 1e-6, "k": 1.0}.get(text[0], 1e-3)
+        return power * STANDARD_GRAVITY
+    if dimension == "rotation" and _TURNS.fullmatch(text):
+        return 2 * math.pi / 60
+    if dimension == "rotation" and _TURNS_PER_SECOND.fullmatch(text):
+        return 2 * math.pi
+    if dimension == "number" and text in BARE:
+        return BARE[text]
+    return to_si(f"1 {text}", dimension, name)
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column that a reader wants."""
+
+    pattern: str  # What its header is called, in lower case
+    dimension: str  # Of its unit; one of "number" needs none
+    units: Mapping[str, float] | None = None  # Its units with their SI values, where a dimension says too little
+    is_bare: bool = False  # Whether its unit may be left out, which then is that of SI
+
+    def names_in(self, table: TextTable) -> list[str]:
+        """Return the headers that may be it; of several those with a unit of its dimension."""
+        names = [name for name in dict.fromkeys(table.header) if name and self._matches(name)]
+        return names if len(names) == 1 else [name for name in names if has_dimension(table.unit(name), self.dimension)]
+
+    def _matches(self, header: str) -> bool:
+        # Primes, as of E'', are signs that a comparison of words leaves out.
+        words = split_header(header)[0].strip().lower()
+        return is_named(header, self.pattern) or re.fullmatch(self.pattern, words) is not None
+
+    def factor(self, name: str, unit: str, where: str) -> float:
+        """Return the SI value of a unit."""
+        if not unit and self.is_bare:
+            return 1.0
+        if self.units is None:
+            return si_factor(unit, self.dimension, name)
+        if unit not in self.units:
+            raise InputError(f"{where}: the unit {show(unit)} of the {name} is not one of {', '.join(self.units)}.")
+        return self.units[unit]
+
+
+def read_columns(
+    path: PathLike, advice: str, *choices: Mapping[str, Column], gaps: bool = False
+) -> tuple[dict[str, Array], Indices]:
+    """Return columns of a file in SI units, with the row of each value: those of the first choice that is all there.
+
+    Rows with ``gaps`` are left out, or else refused.
+    """
+    file = path_of(path)
+    known = [column for choice in choices for column in choice.values()]
+    table = read_table(file, expected=advice, knows=lambda name: any(each._matches(name) for each in known))
+    wanted = next((choice for choice in choices if all(each.names_in(table) for each in choice.values())), choices[-1])
+    found = {}
+    for name, column in wanted.items():
+        headers = column.names_in(table)
+        unit = table.unit(headers[0]) if headers else ""
+        without = bool(headers) and not (unit or column.is_bare or column.dimension == "number")
+        if len(headers) != 1 or without:
+            which = f"{len(headers)} of which may be" if len(headers) > 1 else "none of which is"
+            said = f"in which {show(headers[0])} has no unit" if without else f"{which} the {name}"
+            raise InputError(f"{file}: the header is {show(', '.join(table.header))}, {said}; {advice}.")
+        found[name] = table.numbers_of(headers[0], functools.partial(column.factor, name), gaps=gaps)
+    whole = ~np.isnan(list(found.values())).any(axis=0)
+    return {name: values[whole] for name, values in found.items()}, np.array(table.numbers)[whole]
