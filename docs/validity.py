@@ -129,13 +129,17 @@ def measured(data: xarray.Dataset) -> dict[str, Any]:
     return {"largest": float(f"{size[at]:.3g}"), "at": place}
 
 
+def holds(formula: Formula[Any]) -> str:
+    """Return what a formula is about and its range, in words."""
+    return ", ".join(filter(None, (ABOUT[kind_of(formula)], in_words(formula.limits))))
+
+
 def error_table(section: str) -> str:
-    """Return the ranges of the formulas of a section and what they state of their errors."""
-    rows = []
+    """Return the formulas of a section with the errors that they state, those of one range in one row."""
+    rows: dict[str, list[str]] = {}
     for formula in of_modules(*SECTIONS[section]):
-        holds = ", ".join(filter(None, (ABOUT[kind_of(formula)], in_words(formula.limits))))
-        rows.append([f"`{formula.name}`", holds, percent(formula.worst)])
-    return table(["Formula", "Holds for", "Error [%]"], rows)
+        rows.setdefault(holds(formula), []).append(f"`{formula.name}` {percent(formula.worst)}")
+    return table(["Holds for", "Formulas, error [%]"], [[words, ", ".join(found)] for words, found in rows.items()])
 
 
 def share_maps() -> list[tuple[Formula[Any], xarray.Dataset]]:
