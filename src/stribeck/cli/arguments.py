@@ -12,7 +12,6 @@ from cyclopts import Parameter
 
 import stribeck as sb
 from stribeck.cli.exits import complain
-from stribeck.files.writing import check_writable, need_extra
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError, checked_word, read_number, show, to_si
 
@@ -162,24 +161,6 @@ def curve_arguments(
     elif varied != "speed":
         raise InputError(f"range is missing; a curve over {varied} needs --range with the lowest and highest {varied}.")
     return found
-
-
-def check_outputs(force: bool, plot: Path | None, case: Path | None = None, data: Sequence[Path] = ()) -> None:
-    """Refuse a picture, a case and files of data that could not be written, before the work whose results they are for."""
-    from stribeck.files.datasets import check_export
-    from stribeck.plot.style import PICTURE_ENDINGS
-
-    for path in data:
-        check_export(path, force=force)
-    if plot is not None:
-        check_writable(plot, PICTURE_ENDINGS, force=force)
-        need_extra("a picture", "plot", "matplotlib")
-    if case is not None:
-        check_writable(case, (".toml",), force=force)
-    paths = [*data, *filter(None, (plot, case))]
-    for i, path in enumerate(paths):
-        if path.resolve() in [each.resolve() for each in paths[:i]]:
-            raise InputError(f"{path} is given twice as an output; give each output its own name.")
 
 
 def check_duration(value: float | str | None, name: str) -> float | None:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
 from cyclopts import Parameter
 
 import stribeck as sb
-from stribeck.cli.arguments import Quantity, Verbose, check_outputs
-from stribeck.cli.exits import answer
+from stribeck.cli.arguments import Quantity, Verbose
+from stribeck.cli.exits import EXIT_BAD_INPUT, complain
+from stribeck.cli.outputs import OUTPUTS, Outputs, answer
 from stribeck.cli.progress import interruptible
 from stribeck.files.writing import check_writable
 
@@ -21,7 +23,6 @@ def bench_command(
     /,
     *,
     out: Annotated[Path | None, Parameter(alias="-o")] = None,
-    plot: Path | None = None,
     case: Path | None = None,
     name: str | None = None,
     fluid: str | None = None,
@@ -30,8 +31,7 @@ def bench_command(
     arm: Quantity = None,
     track_radius: Quantity = None,
     verbose: Verbose = False,
-    json: bool = False,
-    force: bool = False,
+    outputs: Outputs = OUTPUTS,
 ) -> int:
     """Make a Stribeck curve of raw files of a rig: what is steady, both directions averaged, the error of each point.
 
@@ -50,8 +50,8 @@ def bench_command(
     if out is not None:
         from stribeck.files.datasets import CSV_ENDINGS
 
-        check_writable(out, CSV_ENDINGS, force=force)
-    check_outputs(force, plot)
+        check_writable(out, CSV_ENDINGS, force=outputs.force)
+    outputs.check()
     with interruptible() as progress:
         found = sb.bench.read(
             runs,
@@ -64,10 +64,9 @@ def bench_command(
             track_radius=track_radius,
             on_file=lambda n, m: progress(n, m, "files"),
         )
-    if out is not None:
-        found.to_csv(out, force=force)
-    if plot is not None:
-        found.plot(plot, force=force)
+    written, problems = outputs.write(
+        found, others={} if out is None else {out: partial(found.to_csv, out, force=outputs.force)}
+    )
 
     def lines() -> list[str]:
         from stribeck.quantities.results import table_lines
@@ -79,7 +78,7 @@ def bench_command(
         return [card.headline, *table_lines(card.table, card.right), *(f"Note: {note}" for note in notes), *more, *taken]
 
     def content() -> dict[str, Any]:
-        return found.to_dict() | {"written": [str(each) for each in (out, plot) if each is not None]}
+        return found.to_dict() | {"written": written}
 
-    answer(json, content, lines, None, None, [out, plot])
-    return 0
+    answer(outputs.json, content, lines, written=written)
+    return complain("\n".join(problems), EXIT_BAD_INPUT if problems else 0)

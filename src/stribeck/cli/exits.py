@@ -1,26 +1,18 @@
-"""Exit codes, tables on stdout, sentences on stderr, and streams that take no more."""
+"""Exit codes, lines on stdout, sentences on stderr, and streams that take no more."""
 
 from __future__ import annotations
 
 import io
-import math
 import os
 import re
 import signal
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable
 from contextlib import suppress
-from functools import partial
-from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import Any, TextIO
 
 from stribeck.files.writing import reason_of
-from stribeck.quantities.units import InputError
-
-if TYPE_CHECKING:
-    from stribeck.cases.case import Case
-    from stribeck.checks.check import Checks
 
 EXIT_FAILED = 1  # Exit code where a state was not found.
 EXIT_BAD_INPUT = 2  # Exit code where an input is refused.
@@ -39,39 +31,6 @@ def complain(text: str, code: int) -> int:
     except OSError:
         redirect_to_null(sys.stderr)
     return code
-
-
-Writers = dict[Path | None, Callable[[], object]]  # What writes each file; None where none is asked for
-
-
-def writers(
-    found: Any, force: bool, title: str = "", plot: Path | None = None, data: Sequence[Path] = (), **drawing: Any
-) -> Writers:
-    """Return what writes the data and the picture of a result."""
-    actions: Writers = {}
-    if data:
-        from stribeck.files.datasets import write_data
-
-        dataset = found.to_dataset()
-        dataset.attrs |= {"title": title} if title else {}
-        actions |= {path: partial(write_data, dataset, path, force=force) for path in data}
-    titled = {"title": title} if title else {}
-    return actions | {plot: partial(found.plot, plot, force=force, **titled, **drawing)}
-
-
-def write_each(actions: Writers) -> tuple[list[str], list[str]]:
-    """Write files; return the names of those that were written, and a sentence about each that was not; none of None."""
-    written, problems = [], []
-    for path, action in actions.items():
-        if path is None:
-            continue
-        try:
-            action()
-        except InputError as problem:
-            problems.append(str(problem))
-        else:
-            written.append(str(path))
-    return written, problems
 
 
 def redirect_to_null(stream: TextIO) -> None:
@@ -127,51 +86,6 @@ def show(lines: Iterable[str]) -> None:
     for line in lines:
         colour = COLOURS.get(re.split(r"\W", line, maxsplit=1)[0]) if coloured else None
         print(f"\x1b[{colour}m{line}\x1b[m" if colour else line)
-
-
-def answer(
-    as_json: bool,
-    content: Callable[[], dict[str, Any]],
-    lines: Callable[[], Iterable[str]],
-    checks: Checks | None = None,
-    case: Case | None = None,
-    written: Iterable[object] = (),
-) -> None:
-    """Print what a command found, as JSON with checks and conversions, or as text with the files that were written."""
-    if not as_json:
-        show([*lines(), *(f"Written: {path}" for path in written if path is not None)])
-        return
-    import json
-
-    found = (checks.to_dict() if checks is not None else {}) | content()
-    found |= {"conversions": list(case.conversions)} if case is not None and case.conversions else {}
-    print(json.dumps(_plain(found), indent=2, ensure_ascii=False, allow_nan=False))
-
-
-def _plain(content: Any) -> Any:
-    """Return content for JSON; what is not finite becomes null, as JSON knows no nan."""
-    if isinstance(content, dict):
-        return {name: _plain(value) for name, value in content.items()}
-    if hasattr(content, "tolist"):  # of arrays
-        return _plain(content.tolist())
-    if isinstance(content, list | tuple):
-        return [_plain(value) for value in content]
-    if isinstance(content, float) and not math.isfinite(content):
-        return None
-    return content
-
-
-def finish(
-    as_json: bool,
-    content: Callable[[], dict[str, Any]],
-    lines: Callable[[], Iterable[str]],
-    files: Writers,
-    checks: Checks | None = None,
-) -> int:
-    """Write files, print what a command found, and return the exit code of what could not be written."""
-    written, problems = write_each(files)
-    answer(as_json, lambda: content() | {"files": written}, lines, checks, None, written)
-    return complain("\n".join(problems), EXIT_BAD_INPUT) if problems else 0
 
 
 class Interrupted:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import stribeck as sb
-from stribeck.cli.arguments import Names, Quantities, Whole, check_outputs
+from stribeck.cli.arguments import Names, Quantities, Whole
 from stribeck.cli.data_files import ENDING, read_arguments
-from stribeck.cli.exits import EXIT_FAILED, complain, finish, writers
+from stribeck.cli.exits import EXIT_FAILED, complain
+from stribeck.cli.outputs import OUTPUTS, Outputs
 from stribeck.cli.progress import interruptible
 from stribeck.quantities.units import InputError
 
@@ -21,12 +24,9 @@ def fit_command(
     free: Names = None,
     per_file: Names = None,
     out: Path | None = None,
-    plot: Path | None = None,
-    no_notes: bool = False,
     robust: bool = False,
     posterior: Whole | None = None,
-    json: bool = False,
-    force: bool = False,
+    outputs: Outputs = OUTPUTS,
 ) -> int:
     """Fit inputs to measured friction, with confidence intervals and what the data cannot determine.
 
@@ -41,7 +41,7 @@ def fit_command(
     from stribeck.fits.case_file import check_fitted_case, write_fitted_case
 
     data, loaded = read_arguments("fit", files)
-    check_outputs(force, plot, out)
+    outputs.check(out)
     from stribeck.fits.fit import names_to_fit
     from stribeck.fits.posterior import check_posterior, draw_posterior
 
@@ -54,25 +54,20 @@ def fit_command(
         drawn = None
         if posterior is not None:
             drawn = draw_posterior(found, steps=posterior, on_step=lambda n, m: progress(n, m, "posterior"))
-    written = writers(found, force, loaded.title, plot, notes=not no_notes)
-    if out is not None and found.converged:
-        written[out] = partial(write_fitted_case, found, loaded, out, force=force)
+    others = {out: partial(write_fitted_case, found, loaded, out, force=outputs.force)} if out and found.converged else {}
 
     def content() -> dict[str, Any]:
         return {"title": loaded.title} | found.to_dict() | ({} if drawn is None else {"posterior": drawn.to_dict()})
 
     said = filter(None, [found.checks.first_line, loaded.title, str(found), str(drawn or "")])
-    code = finish(json, content, lambda: said, written, found.checks)
+    code = outputs.finish(found, lambda: said, loaded.title, content=content, others=others, checks=found.checks)
     return code if code or found.converged else complain(found.outcome.value, EXIT_FAILED)
 
 
 def loop_command(
     *files: Path,
     free: Names = None,
-    plot: Path | None = None,
-    no_notes: bool = False,
-    json: bool = False,
-    force: bool = False,
+    outputs: Outputs = OUTPUTS,
 ) -> int:
     """Fit inputs to a friction loop of a motion to and fro, by strokes solved in time, with confidence intervals.
 
@@ -84,13 +79,12 @@ def loop_command(
     data, loaded = read_arguments("loop", files)
     if len(data) > 1:
         raise InputError(f"{' and '.join(map(str, data))}: loop takes one file.")
-    check_outputs(force, plot)
+    outputs.check()
     with interruptible() as progress:
         found = sb.bench.fit_loop(data[0], loaded, free=free, on_step=lambda n: progress(n, max(n, STROKES), "stroke"))
     headline, _, rest = str(found).partition("\n")
     said = filter(None, [headline, loaded.title, rest])
-    written = writers(found, force, loaded.title, plot, notes=not no_notes)
-    code = finish(json, lambda: {"title": loaded.title} | found.to_dict(), lambda: said, written)
+    code = outputs.finish(found, lambda: said, loaded.title, content=lambda: {"title": loaded.title} | found.to_dict())
     return code if code or found.outcome.ok else complain(found.outcome.value, EXIT_FAILED)
 
 
@@ -100,9 +94,7 @@ def next_command(
     speeds: Quantities = None,
     loads: Quantities = None,
     viscosities: Quantities = None,
-    plot: Path | None = None,
-    json: bool = False,
-    force: bool = False,
+    outputs: Outputs = OUTPUTS,
 ) -> int:
     """Fit measured friction and report which runs to measure next: those that shrink the intervals most for their cost.
 
@@ -111,7 +103,7 @@ def next_command(
     Example: stribeck next measured.csv case.toml --loads "10 N/m" "100 N/m"
     """
     data, loaded = read_arguments("next", files)
-    check_outputs(force, plot)
+    outputs.check()
     with interruptible() as progress:
         found = sb.fit(data, loaded, intervals=False, on_step=progress.of_fit)
         plan = sb.next_runs(
@@ -123,12 +115,10 @@ def next_command(
             on_step=lambda n, m: progress(n, m, "states"),
         )
     said = filter(None, [found.checks.first_line, str(plan)])
-    return finish(json, plan.to_dict, lambda: said, writers(plan, force, loaded.title, plot), found.checks)
+    return replace(outputs, no_notes=False).finish(plan, lambda: said, loaded.title, checks=found.checks)
 
 
-def master_command(
-    *files: Path, plot: Path | None = None, no_notes: bool = False, json: bool = False, force: bool = False
-) -> int:
+def master_command(*files: Path, outputs: Outputs = OUTPUTS) -> int:
     """Put all fluids and loads over viscosity times speed and over the Hersey number, and report what breaks one curve.
 
     Example: stribeck master oil_*.csv water.csv case.toml --plot master.png
@@ -136,21 +126,17 @@ def master_command(
     Prints the scatter about one curve relative to the errors, and which file, load or fluid breaks it.
     """
     data, loaded = read_arguments("master", files)
-    check_outputs(force, plot)
+    outputs.check()
     found = sb.master_curve(data, loaded)
-    written = writers(found, force, loaded.title, plot, notes=not no_notes)
-    return finish(json, found.to_dict, lambda: [loaded.title, str(found)], written)
+    return outputs.finish(found, lambda: [loaded.title, str(found)], loaded.title)
 
 
 def compare_command(
     *files: Path,
     models: str | None = None,
     free: Names = None,
-    plot: Path | None = None,
     out: Path | None = None,
-    no_notes: bool = False,
-    json: bool = False,
-    force: bool = False,
+    outputs: Outputs = OUTPUTS,
 ) -> int:
     """Fit measured friction with several contact laws or models and report which the data prefer, and by how much.
 
@@ -166,18 +152,18 @@ def compare_command(
 
     data, loaded = read_arguments("compare", files)
     as_case = out if out is not None and out.suffix.lower() == ENDING else None
-    check_outputs(force, plot, as_case, data=[out] if out is not None and as_case is None else [])
+    outputs.check(as_case, data=[out] if out is not None and as_case is None else [])
     with interruptible() as progress:
         found = sb.compare(data, loaded, models=models, free=free, on_step=progress.of_fit)
-    written = writers(found, force, loaded.title, plot, notes=not no_notes)
     stored: list[str] = []
+    others: dict[Path, Callable[[], object]] = {}
     if as_case is not None:
-        written[as_case] = lambda: stored.append(write_preferred_case(found, loaded, as_case, force=force))
+        others[as_case] = lambda: stored.append(write_preferred_case(found, loaded, as_case, force=outputs.force))
     elif out is not None:
-        written[out] = lambda: write_data(found.to_dataset(), out, force=force)
+        others[out] = lambda: write_data(found.to_dataset(), out, force=outputs.force)
 
     def lines() -> list[str]:
         of_case = [f"{out} is the case of {name}." for name in stored]
         return [*filter(None, [found.candidates[0].fit.checks.first_line, str(found)]), *of_case]
 
-    return finish(json, found.to_dict, lines, written)
+    return outputs.finish(found, lines, loaded.title, others=others)

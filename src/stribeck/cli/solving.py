@@ -23,11 +23,11 @@ from stribeck.cli.arguments import (
     as_group,
     as_rtol,
     check_duration,
-    check_outputs,
     curve_arguments,
     read_case,
 )
-from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, EXIT_INTERRUPTED, answer, complain, show, write_each, writers
+from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, EXIT_INTERRUPTED, complain, show
+from stribeck.cli.outputs import OUTPUTS, Outputs, answer
 from stribeck.cli.progress import interruptible
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS
@@ -42,11 +42,8 @@ def solve_command(
     beside: GroupOptions = GROUP_OPTIONS,
     model: ModelOptions = MODEL_OPTIONS,
     rtol: Number = None,
-    plot: Path | None = None,
-    no_notes: bool = False,
     verbose: Verbose = False,
-    json: bool = False,
-    force: bool = False,
+    outputs: Outputs = OUTPUTS,
 ) -> int:
     """Solve one state: film thickness, load shares and friction, each with its error.
 
@@ -63,18 +60,17 @@ def solve_command(
         from stribeck.contacts.friction import coefficients
 
         coefficients(None, mu, b)
-    check_outputs(force, plot)
+    outputs.check()
     problem = loaded.contact if loaded else sb.Groups(*map(as_group, GROUPS, groups or ()))
     solution = sb.solve(problem, rtol=tolerance, law=beside.law, **model.parts())
-    if plot is not None:
-        solution.plot(plot, force=force, title=loaded.title if loaded else "", notes=not no_notes)
+    written, problems = outputs.write(solution, loaded.title if loaded else "")
     from stribeck.checks.table import checks_of_solution
     from stribeck.cli.reports import state_and_curve as report
 
     checks = checks_of_solution(solution, loaded.facts) if loaded else None
     said = solution, loaded, mu, b, checks, verbose
-    answer(json, lambda: solution.to_dict(mu, b), lambda: report.solution_lines(*said), checks, loaded, [plot])
-    return 0
+    answer(outputs.json, lambda: solution.to_dict(mu, b), lambda: report.solution_lines(*said), checks, loaded, written)
+    return complain("\n".join(problems), EXIT_BAD_INPUT if problems else 0)
 
 
 def curve_command(
@@ -82,8 +78,6 @@ def curve_command(
     /,
     *,
     output: Annotated[list[Path] | None, Parameter(alias="-o")] = None,
-    plot: Path | None = None,
-    no_notes: bool = False,
     over: str | None = None,
     range: Pair = None,
     points: Whole | None = None,
@@ -94,8 +88,7 @@ def curve_command(
     definition: str | None = None,
     time_limit: Quantity = None,
     verbose: Verbose = False,
-    json: bool = False,
-    force: bool = False,
+    outputs: Outputs = OUTPUTS,
 ) -> int:
     """Solve a Stribeck curve: friction against speed, load or roughness, with its minimum and regimes.
 
@@ -108,8 +101,7 @@ def curve_command(
     Ctrl-C, SIGTERM or the end of --time-limit writes the finished points, marked as incomplete, and exits with code 130.
     """
     loaded = read_case(case, groups, beside, model)
-    outputs = output or []
-    check_outputs(force, plot, data=outputs)
+    outputs.check(data=output or [])
     arguments = curve_arguments(loaded, over, range, points, rtol, groups, beside)
     arguments |= {"law": beside.law} | model.parts()
     arguments |= {} if definition is None else {"definition": definition}
@@ -123,11 +115,11 @@ def curve_command(
 
         verdict = first_verdict(curve, loaded)
         with suppress(KeyboardInterrupt):  # which keeps the curve
-            whole = whole_verdict(curve, loaded, is_drawn=plot is not None, on_point=progress)
+            whole = whole_verdict(curve, loaded, is_drawn=outputs.plot is not None, on_point=progress)
             verdict = verdict if progress.wanted else whole  # what solves a curve ends silently when it is stopped
         is_stopped = progress.wanted and loaded is not None
         progress.writes = True
-        written, problems = write_each(writers(curve, force, title, plot, outputs, notes=not no_notes, **verdict.drawn))
+        written, problems = outputs.write(curve, title, output or [], **verdict.drawn)
     from stribeck.cli.reports import state_and_curve as report
 
     def content() -> dict[str, Any]:
@@ -135,7 +127,7 @@ def curve_command(
         return {"title": title} | curve.to_dict() | {"files": written} | errors
 
     said = curve, loaded, verdict, verbose
-    answer(json, content, lambda: report.curve_lines(*said), verdict.checks, loaded, written)
+    answer(outputs.json, content, lambda: report.curve_lines(*said), verdict.checks, loaded, written)
     if problems:
         return complain("\n".join(problems), EXIT_BAD_INPUT)
     stopped = "Stopped by --time-limit" if progress.timed_out else "Interrupted"

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
 import stribeck as sb
-from stribeck.cli.arguments import Verbose, check_outputs
-from stribeck.cli.exits import EXIT_BAD_INPUT, answer, complain, write_each, writers
+from stribeck.cli.arguments import Verbose
+from stribeck.cli.outputs import OUTPUTS, Outputs
 from stribeck.cli.progress import interruptible
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError
@@ -28,13 +29,10 @@ def stroke_command(
     /,
     *,
     output: Annotated[list[Path] | None, Parameter(alias="-o")] = None,
-    plot: Path | None = None,
     cavitation: str | None = None,
     inlet: str | None = None,
-    no_notes: bool = False,
     verbose: Verbose = False,
-    json: bool = False,
-    force: bool = False,
+    outputs: Outputs = OUTPUTS,
 ) -> int:
     """Solve a stroke, a start or a stop in time: friction beside steady sliding, share of asperities, work of a cycle.
 
@@ -54,8 +52,7 @@ def stroke_command(
             f'{case}: the table [stroke] is missing; add, for example, [stroke] with motion = "sine", stroke = "50 mm" and '
             'frequency = "1 1/s".'
         )
-    outputs = output or []
-    check_outputs(force, plot, data=outputs)
+    outputs.check(data=output or [])
     arguments: dict[str, Any] = {"contact": loaded.contact} | loaded.stroke.arguments
     arguments |= {name: word for name, word in (("cavitation", cavitation), ("inlet", inlet)) if word is not None}
     with interruptible() as progress:
@@ -64,13 +61,12 @@ def stroke_command(
 
         steady = beside_steady(found, lambda done, total: progress(done, total, "steady sliding, point"))
         progress.writes = True
-        written, problems = write_each(writers(found, force, loaded.title, plot, outputs, notes=not no_notes))
 
-    def content() -> dict[str, Any]:
-        return {"title": loaded.title} | found.to_dict() | vars(steady) | {"files": written}
+        def content() -> dict[str, Any]:
+            return {"title": loaded.title} | found.to_dict() | vars(steady)
 
-    answer(json, content, lambda: _lines(found, steady, loaded.title, verbose), case=loaded, written=written)
-    return complain("\n".join(problems), EXIT_BAD_INPUT) if problems else 0
+        said = partial(_lines, found, steady, loaded.title, verbose)
+        return outputs.finish(found, said, loaded.title, content=content, data=output or [], case=loaded)
 
 
 def _lines(found: Stroke, steady: BesideSteady, title: str, verbose: bool) -> Iterator[str]:

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 import stribeck as sb
-from stribeck.cli.arguments import Number, Whole, check_outputs
+from stribeck.cli.arguments import Number, Whole
 from stribeck.cli.data_files import ENDING
-from stribeck.cli.exits import EXIT_FAILED, EXIT_INTERRUPTED, answer, complain, finish, show, writers
+from stribeck.cli.exits import EXIT_FAILED, EXIT_INTERRUPTED, complain, show
+from stribeck.cli.outputs import OUTPUTS, Outputs, answer
 from stribeck.cli.progress import interruptible
 from stribeck.files.writing import atomic_write
 
@@ -85,11 +86,8 @@ def surface_command(
     resolution: str | None = None,
     gamma: Number = None,
     keep_spikes: bool = False,
-    plot: Path | None = None,
-    no_notes: bool = False,
     out: Path | None = None,
-    json: bool = False,
-    force: bool = False,
+    outputs: Outputs = OUTPUTS,
 ) -> int:
     """Analyse a measured topography: rms height, spectrum, and contact-law alpha and beta, with errors.
 
@@ -105,7 +103,7 @@ def surface_command(
     """
     from stribeck import surfaces
 
-    check_outputs(force, plot, out)
+    outputs.check(out)
     choices = {"trend": trend, "window": window, "resolution": resolution, "gamma": gamma}
     arguments: dict[str, Any] = {name: value for name, value in choices.items() if value is not None}
     found = []
@@ -113,10 +111,8 @@ def surface_command(
         scan = surfaces.read_topography(path, unit=unit, height_unit=height_unit, spacing=spacing, channel=channel)
         found.append(surfaces.analyse(scan, keep_spikes=keep_spikes, **arguments))
     surface = found[0] if len(found) == 1 else surfaces.combine(found)
-    written = writers(surface, force, "", plot, notes=not no_notes)
-    if out is not None:
-        written[out] = lambda: surfaces.write_surface_table(surface, out, force=force)
-    return finish(json, surface.to_dict, lambda: [str(surface)], written)
+    others = {} if out is None else {out: lambda: surfaces.write_surface_table(surface, out, force=outputs.force)}
+    return outputs.finish(surface, lambda: [str(surface)], others=others)
 
 
 def explore_command(
