@@ -31,9 +31,8 @@ from stribeck.explorer.inputs import choices, inputs, url
 from stribeck.explorer.inputs.history import History
 from stribeck.explorer.measured import fit_measured, headers_of, read_measured
 from stribeck.explorer.page import parts_of
-from stribeck.explorer.reading import read_file
-from stribeck.explorer.scans import read_scan, with_scan
-from stribeck.explorer.serving.pools import Threads, run
+from stribeck.explorer.pools import Threads, run
+from stribeck.explorer.uploads import read_file, read_scan, with_scan
 from stribeck.explorer.words import words_page
 from stribeck.files.toml import toml_text
 from stribeck.plot import style

@@ -20,7 +20,7 @@ from urllib.parse import quote
 import pytest
 
 import stribeck as sb
-from stribeck.explorer.serving.guard import MAX_REQUEST_BYTES, Guard, check_host
+from stribeck.explorer.guard import MAX_REQUEST_BYTES, Guard, check_host
 
 pytest.importorskip("nicegui")
 

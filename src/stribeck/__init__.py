@@ -10,7 +10,7 @@ _HOMES = {
     "cases.reading": ("load_case",),
     "cases.fit_settings": ("FitSettings",),
     "checks.table": ("check",),
-    "cli.reports.regimes": ("explain",),
+    "cli.reports": ("explain",),
     "contacts.geometries": ("LineContact", "PointContact"),
     "contacts.groups": ("Groups",),
     "contacts.regime": ("regime_of",),

@@ -7,7 +7,7 @@ from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.cases.reading import load_case
 from stribeck.checks.table import check
-from stribeck.cli.reports.regimes import explain
+from stribeck.cli.reports import explain
 from stribeck.contacts.geometries import LineContact, PointContact
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import regime_of

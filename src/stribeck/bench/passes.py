@@ -11,13 +11,10 @@ import numpy as np
 from stribeck._types import Array, Flags, Indices
 from stribeck.bench.raw import Raw
 from stribeck.bench.segments import Part, directions, parts_of
-from stribeck.bench.start_up import common_memory, start_of
-from stribeck.fits.table.correlated import FEWEST, FEWEST_BLOCKS, errors_of_means, memory
-from stribeck.fits.table.repeats import SAME_SPEED
+from stribeck.fits.table.correlated import FEWEST, FEWEST_BLOCKS, error_of_mean, errors_of_means, memory
+from stribeck.fits.table.repeats import CLEAR, SAME_SPEED
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.units import InputError
-
-__all__ = ["KEPT", "Pass", "Series", "passes_of"]
 
 # What becomes of a row.
 KEPT, AT_REST, CHANGING, STARTING, RUN_IN = range(5)
@@ -234,3 +231,26 @@ def _rest_and_changes(raw: Raw, status: Flags | Indices) -> list[str]:
             listed = rows_listed(raw.numbers[rows], 5)
             said.append(f"Left out: {len(rows)} row{'s' * (len(rows) > 1)} {what}: {listed}.")
     return said
+
+
+def common_memory(series: Sequence[Array]) -> tuple[float, float]:
+    """Return variance and correlation of neighbours of the second halves of series, over their means."""
+    halves = [each[len(each) // 2 :] for each in series if len(each) >= 2 * FEWEST_BLOCKS]
+    return memory([each / each.mean() - 1 for each in halves if each.mean()])
+
+
+def start_of(series: Array, common: tuple[float, float]) -> tuple[int, float]:
+    """Return how many rows of a step belong to its start, and how far their mean lies from the others, over theirs."""
+    rows = len(series)
+    if rows < 2 * FEWEST_BLOCKS:
+        return 0, 0.0
+    left = np.arange(rows, 0, -1)
+    sums, squares = (np.cumsum(each[::-1])[::-1] for each in (series, (series - series.mean()) ** 2))
+    deviations = squares - left * (sums / left - series.mean()) ** 2
+    cut = int(np.argmin((deviations / left**2)[: rows // 2 + 1]))
+    if not cut:
+        return 0, 0.0
+    rest = float(series[cut:].mean())
+    apart = float(series[:cut].mean()) - rest
+    doubt = abs(rest) * math.hypot(error_of_mean(cut, *common), error_of_mean(rows - cut, *common))
+    return (cut, apart / rest) if rest and abs(apart) > CLEAR * doubt else (0, 0.0)

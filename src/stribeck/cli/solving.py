@@ -65,11 +65,11 @@ def solve_command(
     solution = sb.solve(problem, rtol=tolerance, law=beside.law, **model.parts())
     written, problems = outputs.write(solution, loaded.title if loaded else "")
     from stribeck.checks.table import checks_of_solution
-    from stribeck.cli.reports import state_and_curve as report
+    from stribeck.cli import reports
 
     checks = checks_of_solution(solution, loaded.facts) if loaded else None
     said = solution, loaded, mu, b, checks, verbose
-    answer(outputs.json, lambda: solution.to_dict(mu, b), lambda: report.solution_lines(*said), checks, loaded, written)
+    answer(outputs.json, lambda: solution.to_dict(mu, b), lambda: reports.solution_lines(*said), checks, loaded, written)
     return complain("\n".join(problems), EXIT_BAD_INPUT if problems else 0)
 
 
@@ -120,14 +120,14 @@ def curve_command(
         is_stopped = progress.wanted and loaded is not None
         progress.writes = True
         written, problems = outputs.write(curve, title, output or [], **verdict.drawn)
-    from stribeck.cli.reports import state_and_curve as report
+    from stribeck.cli import reports
 
     def content() -> dict[str, Any]:
         errors = {} if verdict.errors is None else {"uncertainty": verdict.errors.to_dict()}
         return {"title": title} | curve.to_dict() | {"files": written} | errors
 
     said = curve, loaded, verdict, verbose
-    answer(outputs.json, content, lambda: report.curve_lines(*said), verdict.checks, loaded, written)
+    answer(outputs.json, content, lambda: reports.curve_lines(*said), verdict.checks, loaded, written)
     if problems:
         return complain("\n".join(problems), EXIT_BAD_INPUT)
     stopped = "Stopped by --time-limit" if progress.timed_out else "Interrupted"
@@ -149,13 +149,13 @@ def regimes_command(case: Path, /, *, verbose: Verbose = False, json: bool = Fal
 
     Example: stribeck regimes examples/pdms_cylinder.toml
     """
-    from stribeck.cli.reports import regimes as report
+    from stribeck.cli import reports
     from stribeck.regimes import overview
 
     loaded = sb.load_case(case)
     with interruptible() as progress:
         found = overview.overview_of(loaded, progress)
-    lines = report.regimes_lines if verbose else report.regimes_answer
+    lines = reports.regimes_lines if verbose else reports.regimes_answer
     answer(json, lambda: {"title": loaded.title} | found.to_dict(), lambda: lines(found), found.checks, loaded)
     return 0 if found.curve.outcome.ok else complain(found.curve.outcome.value, EXIT_FAILED)
 
@@ -174,15 +174,14 @@ def check_command(case: Path, /, *, json: bool = False) -> int:
     """
     from stribeck.checks.subject import Subject
     from stribeck.checks.table import checks_of
+    from stribeck.cli import reports
 
     loaded = sb.load_case(case)
     with interruptible() as progress:
         facts = (loaded.stroke.facts if loaded.stroke else {}) | loaded.facts
         found = checks_of(Subject(loaded.contact, facts, loaded.definition, on_point=progress))
-    from stribeck.cli.reports.text import conversion_lines
-
     headline, *lines = str(found).splitlines()
-    said = [headline, *filter(None, [loaded.title]), *lines, *conversion_lines(loaded)]
+    said = [headline, *filter(None, [loaded.title]), *lines, *reports.conversion_lines(loaded)]
     answer(json, lambda: {"title": loaded.title, "unchecked": list(found.unchecked)}, lambda: said, found, loaded)
     return 0
 
@@ -229,9 +228,9 @@ def figures_command(
 
 
 def _too_small(curve: sb.results.StribeckCurve) -> str:
-    from stribeck.cli.reports.text import place
+    from stribeck.cli import reports
 
-    where = f"states whose {curve.over} is below {place(curve, curve.values[0])}" if len(curve) else "these states"
+    where = f"states whose {curve.over} is below {reports.place(curve, curve.values[0])}" if len(curve) else "these states"
     return (
         f"rtol = {curve.rtol:g} cannot be reached: double precision limits the error of {where} above it; "
         "ask for a larger rtol."

@@ -1,6 +1,6 @@
 """The explorer: an interactive page, served on this machine, on which all results follow the inputs.
 
 ``inputs``, ``carried`` and ``url`` hold what is asked, ``answer`` asks the package for the answer, ``charts`` and ``table``
-show it, ``tab`` and ``page`` tie them together, ``reading`` and ``downloads`` read and write files, ``server`` runs it behind
-``serving.guard``. No equation is solved here.
+show it, ``tab`` and ``page`` tie them together, ``uploads`` and ``downloads`` read and write files, ``server`` runs it behind
+``guard``. No equation is solved here.
 """

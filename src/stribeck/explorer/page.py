@@ -14,7 +14,7 @@ from stribeck.explorer.curves import in_atlas
 from stribeck.explorer.downloads import KINDS, examples
 from stribeck.explorer.inputs.choices import CHOICES, list_of
 from stribeck.explorer.inputs.inputs import GROUP_FIELDS, Inputs, row_of
-from stribeck.explorer.scans import SCAN_ENDINGS
+from stribeck.explorer.uploads import SCAN_ENDINGS
 
 UPDATING_TEXT = "Updating ..."  # Text while something is still being computed.
 

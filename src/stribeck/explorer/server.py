@@ -15,11 +15,10 @@ from urllib.parse import quote
 
 from stribeck.cases.reading import load_case
 from stribeck.explorer.downloads import KINDS, examples, name_of, shown_name
+from stribeck.explorer.guard import Guard, check_host
 from stribeck.explorer.inputs.inputs import Inputs, from_case
 from stribeck.explorer.inputs.url import MAX_URL_LENGTH, check_length, decode
-from stribeck.explorer.serving.guard import Guard, check_host
-from stribeck.explorer.serving.pools import FILES, run
-from stribeck.explorer.serving.tidy import set_aside
+from stribeck.explorer.pools import FILES, run, set_aside
 from stribeck.explorer.words import words_page
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError, to_si

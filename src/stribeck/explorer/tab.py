@@ -26,11 +26,9 @@ from stribeck.explorer.inputs.history import History
 from stribeck.explorer.inputs.inputs import Inputs
 from stribeck.explorer.measured import MEANINGS, Measured, fit_measured, free_inputs
 from stribeck.explorer.page import UPDATING_TEXT, Page, Problems, form_of, parts_of
-from stribeck.explorer.reading import read_file
-from stribeck.explorer.scans import SCAN_ENDINGS, Scan, with_scan
-from stribeck.explorer.serving.pools import FILES, Threads, run
-from stribeck.explorer.serving.tidy import tidy_soon
+from stribeck.explorer.pools import FILES, Threads, run, tidy_soon
 from stribeck.explorer.table import without_rtol
+from stribeck.explorer.uploads import SCAN_ENDINGS, Scan, read_file, with_scan
 from stribeck.files.writing import MissingExtraError
 from stribeck.fits.measurements import CHANGE_READ
 from stribeck.quantities.units import InputError

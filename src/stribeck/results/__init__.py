@@ -8,7 +8,7 @@ _HOMES = {
     "bench.loop_fit": ("LoopFit",),
     "bench.result": ("BenchCurve",),
     "checks.check": ("Check", "Checks"),
-    "cli.reports.regimes": ("Explanation",),
+    "cli.reports": ("Explanation",),
     "contacts.friction": ("Friction",),
     "contacts.contact": ("HertzScales",),
     "curves.landmarks": ("Landmark",),

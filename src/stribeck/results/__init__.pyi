@@ -5,7 +5,7 @@ from stribeck.batches.result import BatchSolution
 from stribeck.bench.loop_fit import LoopFit
 from stribeck.bench.result import BenchCurve
 from stribeck.checks.check import Check, Checks
-from stribeck.cli.reports.regimes import Explanation
+from stribeck.cli.reports import Explanation
 from stribeck.contacts.contact import HertzScales
 from stribeck.contacts.friction import Friction
 from stribeck.curves.landmarks import Landmark

@@ -1,1 +1,0 @@
-"""Reports: results in words and as JSON."""

@@ -1,1 +1,0 @@
-"""The server around the page: access control, and the memory of closed pages."""
