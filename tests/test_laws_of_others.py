@@ -8,8 +8,12 @@ from pathlib import Path
 
 import pytest
 from command_line import SCRIPT, environment
+from yasuda import Yasuda
+
+import stribeck as sb
 
 PAGE = Path(__file__).parents[1] / "docs" / "for_developers.md"
+YASUDA = Path(__file__).with_name("yasuda.py")
 CLASSES = ("SpringLayer", "LinearlyStiffening", "Yasuda")
 CASE = """
 [contact]
@@ -77,7 +81,8 @@ WRONG = {
 def run(tmp_path_factory):
     """Return what runs a command where a distribution with the laws of the page is installed."""
     folder = tmp_path_factory.mktemp("others")
-    blocks = [ast.parse(text) for text in re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL) if "class " in text]
+    shown = [text for text in re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL) if "class " in text]
+    blocks = [ast.parse(text) for text in (*shown, YASUDA.read_text())]
     kept, names = [], []
     for block in blocks:
         classes = [node for node in block.body if isinstance(node, ast.ClassDef) and node.name in CLASSES]
@@ -126,3 +131,10 @@ def test_the_page_offers_them_a_fit_frees_their_numbers_a_sweep_takes_them_and_w
     assert numbers == [2.0, 1.2, pytest.approx(1.5, rel=1e-2)]
     for sentence, (*_, wanted) in zip(said, WRONG.values(), strict=True):
         assert wanted in sentence
+
+
+def test_a_law_of_shear_with_the_shape_of_another_has_its_film_and_thins_from_lower_rates_when_blunter():
+    contact = sb.load_case(PAGE.parents[1] / "examples" / "pdms_cylinder.toml").contact
+    carreau = sb.solve(contact, fluid=sb.fluids.Carreau("1 ms", 0.5)).central_gap
+    assert sb.solve(contact, fluid=Yasuda("1 ms", 0.5)).central_gap == pytest.approx(carreau, rel=1e-6)
+    assert sb.solve(contact, fluid=Yasuda("1 ms", 0.5, sharpness=1.5)).central_gap < carreau
