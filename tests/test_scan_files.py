@@ -112,6 +112,9 @@ PROFILES = {
     "three digits": "x (um) z (um)\n" + rows(X, LINE, form=("{:.3g}",), sep=" "),
     "trailing semicolons": "x [µm];z [um];;\n"
     + rows(X, LINE, ("",) * 400, ("",) * 400, form=("{:.3f}", "{:.4f}", "{}", "{}"), sep=";"),
+    "table of R": '"x_um" "z_um"\n' + rows(range(1, 401), X, LINE, sep=" ", form=('"{}"',)),
+    "end in words": "x (um),z (um)\n" + rows(X, LINE) + "\nEnd of data\n",
+    "two pages": "x (um),z (um)\n" + rows(X[:90], LINE[:90]) + "\nx (um),z (um)\n" + rows(X[90:], LINE[90:]),
     "column": "Points: 400\nSpacing: 0.156 um\nHeight unit: um\n" + rows(LINE),
 }
 
@@ -167,6 +170,12 @@ def test_marks_of_instruments_for_no_height_are_missing_and_named(subtests, tmp_
             for scan in (line, whole):
                 assert scan.missing == 3
                 assert scan.notes[0].startswith("3 points ") and "as missing" in scan.notes[0]
+
+
+def test_lines_of_a_map_in_which_nothing_was_measured_are_part_of_it(tmp_path):
+    missing = "\t".join(["No Data"] * 48)
+    scan = read(tmp_path, "\n".join([missing, *matrix().splitlines(), missing]), unit="um", spacing="1 um")
+    assert scan.heights.shape == (48, 50) and scan.missing == 96
 
 
 def test_heights_that_reach_to_a_code_are_heights(tmp_path):

@@ -12,6 +12,8 @@ from stribeck.quantities.units import InputError
 # Cells that hold no value, in lower case.
 MISSING_CELLS = frozenset({"", "-", "--", "---", "na", "n/a", "nan", "null", "none", "#n/a", "#nv", "nv", "?", "bad", "***"})
 
+_MISSING = re.compile(r"[*#-]{2,}|[+-]?nan\(?\w*\)?|[+-]?1\.#\w+|void|invalid|nodata|overflow|ovr|ovf")
+
 MAX_LISTED_ROWS = 10  # Rows that a sentence lists
 
 # What may stand in the brackets of a header in place of a unit: the letter of the quantity
@@ -96,7 +98,7 @@ def cells_of(line: str, separator: str, path: Path, number: int) -> list[str]:
         except (csv.Error, ValueError) as problem:
             raise InputError(f"{path}: row {number} cannot be split into cells ({problem}); check its quotes.") from None
         return [cell.replace("\N{NO-BREAK SPACE}", " ").strip() for cell in cells]
-    words = line.split()
+    words = [word.strip('"') or word for word in line.split()]
     if not any(mark in line for mark in "[("):
         return words
     cells = []
@@ -107,6 +109,12 @@ def cells_of(line: str, separator: str, path: Path, number: int) -> list[str]:
         else:
             cells.append(word)
     return cells
+
+
+def is_missing(cell: str) -> bool:
+    """Return whether a cell says that there is no value."""
+    text = cell.strip('"').lower()
+    return text in MISSING_CELLS or _MISSING.fullmatch(text) is not None
 
 
 def looks_like_units(cell: str) -> bool:

@@ -8,13 +8,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Self
 
-from stribeck.files.cells import MISSING_CELLS, cells_of, has_number, looks_like_units
+from stribeck.files.cells import MISSING_CELLS, cells_of, has_number, is_missing, looks_like_units
 from stribeck.quantities.units import InputError
 
 # Separators of columns beside white space; the first of several in a line wins.
 COLUMN_SEPARATORS = ("\t", ";", ",", "|")
 
 WIDE_SPACE = "  "  # Separates names of several words in columns that are aligned by spaces
+
+SAMPLE_LINES = 200  # Lines of numbers by which the layout of rows without names is found
 
 MAX_HEADING_LINES = 4  # Lines above rows of numbers that may name columns, units and curves
 
@@ -27,18 +29,15 @@ class Line:
     text: str  # Text without the sign of a comment
     comment: bool  # Whether the line began with the sign of a comment
     numbers: int  # Number of cells that are numbers
+    numeric: bool  # Whether it is a row of the table
 
     @classmethod
-    def of(cls, number: int, text: str) -> Self:
-        """Return a line of a file."""
+    def of(cls, number: int, text: str, numbers_in: Callable[[str], int] | None = None) -> Self:
+        """Return a line of a file, a row where two of its cells or more are numbers, or ``numbers_in`` counts one."""
         comment = text.lstrip().startswith("#")
         text = text.lstrip().lstrip("#") if comment else text
-        return cls(number, text, comment, 0 if comment else _numbers_in(text))
-
-    @property
-    def numeric(self) -> bool:
-        """Whether two of its cells or more are numbers."""
-        return self.numbers > 1
+        numbers = 0 if comment else (numbers_in or _numbers_in)(text)
+        return cls(number, text, comment, numbers, numbers > (numbers_in is None))
 
 
 @dataclass(frozen=True)
@@ -55,6 +54,24 @@ class Heading:
     known: int = 0  # Names that the caller knows
     end: int = 0  # Place of the next heading, or the number of lines
     rows: int = 0  # Lines of numbers below it
+
+    @property
+    def is_bare(self) -> bool:
+        """Whether it stands for the names that rows of numbers do not have."""
+        return self.at == self.below
+
+    @classmethod
+    def missing_above(cls, lines: Sequence[Line], i: int) -> Self:
+        """Return the heading of rows without names, which begin at a line."""
+        end = next((k for k in range(i, len(lines)) if not lines[k].numeric), len(lines))
+        sample = lines[i : min(end, i + SAMPLE_LINES)]
+        separator = separator_of([line.text for line in sample])
+        filled = [[bool(cell) for cell in cells_of(line.text, separator, Path(), line.number)] for line in sample]
+        width = max(len(each) - each[::-1].index(True) for each in filled if len(each) <= len(filled[0]))
+        heading = cls(at=i, first=i, below=i, separator=separator, names=("",) * width)
+        while width > 1 and i and all(map(is_missing, heading._padded(lines[i - 1]) or ("0",))):
+            i -= 1  # rows in which nothing was measured
+        return replace(heading, at=i, first=i, below=i)
 
     @classmethod
     def at_line(cls, lines: Sequence[Line], i: int) -> Self:
@@ -76,7 +93,7 @@ class Heading:
         if len(cells) != width and self.separator == "\t":
             by_spaces = cells_of(text, "", path, number)
             cells = by_spaces if len(by_spaces) == width else cells
-        if len(cells) < width and (filled_up or not any(self.names[len(cells) :])):
+        if len(cells) < width and (filled_up or not (self.is_bare or any(self.names[len(cells) :]))):
             cells += [""] * (width - len(cells))
         return cells
 
@@ -119,8 +136,8 @@ class Heading:
         )
 
 
-def headings_in(lines: Sequence[Line], knows: Callable[[str], bool]) -> list[Heading]:
-    """Return the headings of all tables among lines, from above."""
+def headings_in(lines: Sequence[Line], knows: Callable[[str], bool], *, bare: bool = False) -> list[Heading]:
+    """Return the headings of all tables among lines, from above; ``bare`` also those of rows without names."""
     found: list[Heading] = []
     stack: list[int] = []
     comments: list[int] = []
@@ -132,27 +149,33 @@ def headings_in(lines: Sequence[Line], knows: Callable[[str], bool]) -> list[Hea
         else:
             if stack or (comments and not found):
                 # A comment names the columns only where nothing else does.
-                heading = _best(lines, stack[-MAX_HEADING_LINES:], i, knows) or (
-                    _best(lines, comments[-MAX_HEADING_LINES:], i, knows) if not found else None
+                heading = _best(lines, stack[-MAX_HEADING_LINES:], i, knows, 2 - bare) or (
+                    _best(lines, comments[-MAX_HEADING_LINES:], i, knows, 2 - bare) if not found else None
                 )
                 if heading:
                     found.append(heading)
+            if bare and (not found or (found[-1].below < i and not any(found[-1].fits(lines[k]) for k in stack) and stack)):
+                found.append(Heading.missing_above(lines, i))
             stack, comments = [], []
     ends = [*(each.first for each in found), len(lines)][1:]
     counts = [sum(line.numeric for line in lines[each.below : end]) for each, end in zip(found, ends, strict=False)]
     return [replace(each, end=end, rows=rows) for each, end, rows in zip(found, ends, counts, strict=False)]
 
 
-def _best(lines: Sequence[Line], stack: Sequence[int], below: int, knows: Callable[[str], bool]) -> Heading | None:
+def _best(
+    lines: Sequence[Line], stack: Sequence[int], below: int, knows: Callable[[str], bool], fewest: int
+) -> Heading | None:
     """Return the heading of rows of numbers whose names are known best, or most, or stand highest; None if none fits."""
     fitting = []
     for i in stack:
         for mark in _separators(lines[i]):
             names = tuple(_names(lines[i].text, mark))
-            given = [name for name in names if name]
-            separator = _separator(lines[below].text) if lines[i].comment or mark == WIDE_SPACE else mark
+            given = [name for name in names if not is_missing(name)]
+            separator = separator_of([lines[below].text]) if lines[i].comment or not mark.strip() else mark
             heading = Heading(at=i, first=i, below=below, separator=separator, names=names)
-            if len(given) < 2 or any(map(has_number, names)) or not heading.fits(lines[below]):
+            if not mark and not heading.fits(lines[below]):
+                heading = replace(heading, names=("", *names))  # numbers of the rows have no name
+            if len(given) < fewest or any(map(has_number, names)) or not heading.fits(lines[below]):
                 continue
             fitting.append(replace(heading, known=len({name for name in given if knows(name)})))
             break
@@ -172,6 +195,18 @@ def _separators(line: Line) -> tuple[str, ...]:
 
 def _names(text: str, mark: str) -> list[str]:
     return re.split(r"\s{2,}", text.strip()) if mark == WIDE_SPACE else _split(text, mark)
+
+
+def separator_of(rows: Sequence[str]) -> str:
+    """Return what separates the numbers of rows, in which a comma may be the decimal sign; empty for white space."""
+    if all(";" in row for row in rows):
+        return ";"
+    if all("\t" in row and not re.search(r"[^\t] +[^\t ]", row.strip()) for row in rows):
+        return "\t"
+    if all("|" in row for row in rows):
+        return "|"
+    decimal = all(re.fullmatch(r"\S+(\s+\S+)+", row.strip()) and not re.search(r",\s|\s,", row.strip()) for row in rows)
+    return "" if decimal or not any("," in row for row in rows) else ","
 
 
 def _separator(text: str) -> str:

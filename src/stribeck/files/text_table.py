@@ -12,11 +12,11 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.files.cells import (
-    MISSING_CELLS,
     NUMBER_WITH_COMMA,
     NUMBER_WITH_POINT,
     NUMBER_WITH_UNIT,
     has_number,
+    is_missing,
     number_of,
     rows_listed,
     split_header,
@@ -44,6 +44,7 @@ SAMPLE_ROWS = 200  # Rows of each table by which tables are compared
 SETTING_RTOL = 0.05  # Relative difference of numbers up to which a column has only one setting
 
 _THOUSANDS = re.compile(r"[+-]?[0-9]{1,3}(?:[,.' ][0-9]{3})+(?:[.,][0-9]+)?")
+_NO_VALUE = re.compile(r"\bno[ _-]?(?:data|value)\b|\bout of range\b", re.IGNORECASE)
 _PLUS_MINUS = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
 
 
@@ -96,7 +97,7 @@ class TextTable:
     def values(self, name: str) -> Array:
         """Return the numbers of a column as written, NaN where a cell holds none."""
         decimal = "," if self.decimal_comma([name]) else "."
-        read = [None if cell.lower() in MISSING_CELLS else number_of(cell, decimal) for cell in self.column(name)]
+        read = [None if is_missing(cell) else number_of(cell, decimal) for cell in self.column(name)]
         return np.array([np.nan if each is None else each[0] for each in read])
 
     def numbers_of(
@@ -112,7 +113,7 @@ class TextTable:
         usual = 1.0 if factor is None else None
         found = np.full(len(self.rows), np.nan)
         for i, cell in enumerate(self.column(name)):
-            if gaps and cell.lower() in MISSING_CELLS:
+            if gaps and is_missing(cell):
                 continue
             where = f"{self.path}: row {self.numbers[i]}, column {show(name)}"
             read = number_of(cell, decimal)
@@ -156,7 +157,31 @@ def read_table(
     knows: Callable[[str], bool] = lambda name: False,
     sheet: str | None = None,
 ) -> TextTable:
-    """Return the cells of a file of columns with a header."""
+    """Return the cells of a file of columns with a header; curves side by side stand one below another."""
+    table, labels = _read(path, header_row, expected, knows, sheet)
+    if not labels and _are_pairs(table.header, table.rows):
+        labels = table.header
+        table = replace(table, header=("X", "Y") * (len(labels) // 2), written=("X", "Y"))
+    return _split_errors(_drop_repeated_columns(_stack_curves(table, labels)))
+
+
+def read_numbers(
+    path: Path, expected: str, knows: Callable[[str], bool], numbers_in: Callable[[str], int], largest: int
+) -> TextTable:
+    """Return the cells of a text of at most ``largest`` bytes whose columns need no header, as they stand."""
+    return _read(path, None, expected, knows, None, numbers_in, largest)[0]
+
+
+def _read(
+    path: Path,
+    header_row: int | None,
+    expected: str,
+    knows: Callable[[str], bool],
+    sheet: str | None,
+    numbers_in: Callable[[str], int] | None = None,
+    largest: int = MAX_TABLE_BYTES,
+) -> tuple[TextTable, tuple[str, ...]]:
+    """Return the cells of a file, with a header unless ``numbers_in`` tells rows, and the names of curves side by side."""
     filled_up = path.suffix.lower() in SPREADSHEET_ENDINGS and path.is_file()
     notes: tuple[str, ...] = ()
     if filled_up:
@@ -166,8 +191,9 @@ def read_table(
             notes = (f"Sheet {show(name)} read, not {left_out}; sheet = ... in [fit] chooses another.",)
             path = Path(f"{path} (sheet {show(name)})")
     else:
-        lines = _lines_of_text(path, sheet)
-    heading, same, others = _heading(path, lines, header_row, expected, knows)
+        lines = _lines_of_text(path, sheet, numbers_in, largest)
+    bare = numbers_in is not None
+    heading, same, others = _heading(path, lines, header_row, expected, knows, bare)
     separator, number = heading.separator, lines[heading.at].number
     above = tuple((line.number, line.text) for line in lines[: heading.at])
     header = heading.names
@@ -176,7 +202,7 @@ def read_table(
     )
     if all(NUMBER_WITH_POINT.fullmatch(cell) or NUMBER_WITH_COMMA.fullmatch(cell) for cell in header):
         raise InputError(f"{path}: row {number} holds numbers, not names of columns; {expected}.")
-    if sum(map(bool, header)) < 2:
+    if sum(map(bool, header)) < 2 and not bare:
         raise InputError(
             f"{path}: row {number} holds one column, {show(next(filter(None, header), ''))}; "
             f"separate the columns by semicolons, tabs or commas{elsewhere}."
@@ -196,11 +222,9 @@ def read_table(
         )
     if text:
         notes += (f"{len(text)} row{'s' * (len(text) > 1)} of other text between the numbers left out: {rows_listed(text)}.",)
-    units, labels = heading.units, heading.labels
-    if not labels and _are_pairs(header, rows):
-        header, labels = ("X", "Y") * (len(header) // 2), header
+    units = heading.units
     written = tuple(dict.fromkeys(filter(None, header)))
-    if len(set(steps)) > 1:
+    if len(set(steps)) > 1 and not bare:
         header = (*header, STEP_HEADER)
         rows = [(*row, str(step)) for row, step in zip(rows, steps, strict=True)]
         units = (*units, "") if units else ()
@@ -215,7 +239,7 @@ def read_table(
         above=above,
         notes=notes,
     )
-    return _split_errors(_drop_repeated_columns(_stack_curves(table, labels)))
+    return table, heading.labels
 
 
 def _sheet(path: Path, wanted: str | None, knows: Callable[[str], bool]) -> tuple[str, list[Line], tuple[str, ...]]:
@@ -228,12 +252,14 @@ def _sheet(path: Path, wanted: str | None, knows: Callable[[str], bool]) -> tupl
     return best, sheets[best], tuple(name for name in sheets if name != best)
 
 
-def _lines_of_text(path: Path, sheet: str | None) -> list[Line]:
+def _lines_of_text(path: Path, sheet: str | None, numbers_in: Callable[[str], int] | None, largest: int) -> list[Line]:
     """Return the lines of a text that are not empty."""
     if sheet is not None:
         raise InputError(f"{path} is no workbook, so that it has no sheet {show(sheet)}; take sheet out of [fit].")
-    text = text_of(path, MAX_TABLE_BYTES, "a table is a few pages of text", "a text file of columns")
-    return _check_size(path, [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip(" \t;,|")])
+    text = text_of(path, largest, "keep the rows and columns that are wanted", "a text file of columns")
+    lines = ((i, _NO_VALUE.sub("nodata", line).strip("\f\ufeff")) for i, line in enumerate(text.splitlines(), 1))
+    filled = [(i, line) for i, line in lines if line.strip(" \t;,|")]
+    return _check_size(path, filled) if numbers_in is None else [Line.of(*each, numbers_in) for each in filled]
 
 
 def _check_size(path: Path, filled: list[tuple[int, str]]) -> list[Line]:
@@ -246,7 +272,7 @@ def _check_size(path: Path, filled: list[tuple[int, str]]) -> list[Line]:
 
 
 def _heading(
-    path: Path, lines: list[Line], header_row: int | None, expected: str, knows: Callable[[str], bool]
+    path: Path, lines: list[Line], header_row: int | None, expected: str, knows: Callable[[str], bool], bare: bool
 ) -> tuple[Heading, list[Heading], list[Heading]]:
     """Return the header of the table that is read, all that repeat it below, and those of other tables."""
     plain = [i for i, line in enumerate(lines) if not line.comment]
@@ -258,10 +284,13 @@ def _heading(
             )
     if not plain:
         raise InputError(f"{path} holds no data; {expected}.")
-    found = headings_in(lines, knows)
-    tables: dict[tuple[str, tuple[str, ...]], list[Heading]] = {}
+    found = headings_in(lines, knows, bare=bare)
+    if bare and not found:
+        raise InputError(f"{path} has no line of numbers; {expected}.")
+    tables: dict[tuple[str, tuple[str, ...], int], list[Heading]] = {}
     for each in found:
-        tables.setdefault((lines[each.at].text.strip(), each.units), []).append(each)
+        text = "" if each.is_bare else lines[each.at].text.strip()
+        tables.setdefault((text, each.units, len(each.names)), []).append(each)
     if header_row is not None or not tables:
         there = next((each for each in tables.values() for one in each if one.at == plain[0]), [])
         own = [each for each in there if each.at >= plain[0]] or [Heading.at_line(lines, plain[0])]
@@ -312,16 +341,16 @@ def _body(
     elsewhere: str,
 ) -> tuple[list[tuple[str, ...]], list[int], list[int], list[int]]:
     """Return the rows below a header, number and step of each, and rows of text; the header may come again above each step."""
-    again = {each.first: each for each in same} | {each.at: each for each in same}
+    again = {at: each for each in same if not each.is_bare for at in (each.first, each.at)}
     apart = {each.first for each in others}
     width, wide = len(heading.names), sum(map(bool, heading.names)) > 2
     rows, numbers, steps, text = list[tuple[str, ...]](), list[int](), list[int](), list[int]()
-    pending: list[tuple[Line, list[str]]] = []
+    pending: list[tuple[Line, list[str], int]] = []
 
     def settle(*, header_follows: bool) -> None:
         """Take rows of another width for text above the next header, or for rows of few numbers; else refuse them."""
-        for line, cells in pending:
-            if not header_follows and len(cells) != width and line.numbers > wide:
+        for line, cells, count in pending:
+            if not header_follows and len(cells) != width and max(line.numbers, count) > wide:
                 raise InputError(_ragged(path, line, cells, heading, elsewhere))
             text.append(line.number)
         pending.clear()
@@ -342,7 +371,7 @@ def _body(
         if count == 0 and not line.numeric and (len(cells) != width or sum(map(bool, cells)) < 2):
             text.append(line.number)
         elif len(cells) != width or (len(same) > 1 and count < 2):
-            pending.append((line, cells))
+            pending.append((line, cells, count))
         else:
             settle(header_follows=False)
             rows.append(tuple(cells))
@@ -372,7 +401,7 @@ def _drop_repeated_columns(table: TextTable) -> TextTable:
     return table if len(kept) == len(table.header) else table.of_columns(kept)
 
 
-def _are_pairs(header: tuple[str, ...], rows: list[tuple[str, ...]]) -> bool:
+def _are_pairs(header: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> bool:
     """Return whether each name stands above two columns of numbers, as of curves that were read off a picture."""
     named, unnamed = header[::2], header[1::2]
     return (
@@ -425,7 +454,7 @@ def _split_errors(table: TextTable) -> TextTable:
         cells = [row[at] for row in table.rows]
         parts = [_PLUS_MINUS.split(cell) for cell in cells]
         pairs = [len(part) == 2 and all(map(has_number, part)) for part in parts]
-        if not any(pairs) or not all(pair or cell.lower() in MISSING_CELLS for pair, cell in zip(pairs, cells, strict=True)):
+        if not any(pairs) or not all(pair or is_missing(cell) for pair, cell in zip(pairs, cells, strict=True)):
             continue
         words, unit = split_header(table.header[at])
         name = f"{words} error [{unit}]" if unit else f"{words} error"
@@ -442,7 +471,8 @@ def _split_errors(table: TextTable) -> TextTable:
 
 def _ragged(path: Path, line: Line, cells: list[str], heading: Heading, elsewhere: str) -> str:
     width, separator = len(heading.names), heading.separator
-    problem = f"{path}: row {line.number} has {len(cells)} cell{'s' * (len(cells) != 1)} where the header has {width}"
+    above = "the rows above have" if heading.is_bare else "the header has"
+    problem = f"{path}: row {line.number} has {len(cells)} cell{'s' * (len(cells) != 1)} where {above} {width}"
     other = next((name for mark, name in SEPARATORS.items() if mark != separator and line.text.count(mark) == width - 1), None)
     if separator == "," and len(cells) > width and all(re.fullmatch(r"[+-]?[0-9]+", cell) for cell in cells if cell):
         return f"{problem}; commas cannot both separate columns and begin decimals: export with semicolons or tabs."

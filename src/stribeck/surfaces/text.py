@@ -16,8 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.files.cells import MISSING_CELLS, NUMBER_WITH_POINT, cells_of
-from stribeck.files.reading import text_of
+from stribeck.files.cells import NUMBER_WITH_POINT, is_missing
+from stribeck.files.text_table import read_numbers
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.text_header import Header, header_of, unit_of
 from stribeck.surfaces.topography import MIN_POINTS, Topography
@@ -28,21 +28,6 @@ Spacing = str | float | Sequence[str | float] | None
 """The distance between points as it is given: one for all axes, or one each."""
 
 TEXT_ENDINGS = (".csv", ".tsv", ".txt", ".dat", ".xyz")  # Endings of plain text files
-
-# Cells that instruments write for a missing point, in lower case.
-MISSING_HEIGHTS = MISSING_CELLS | {
-    "inf",
-    "-inf",
-    "+inf",
-    "infinity",
-    "-infinity",
-    "void",
-    "invalid",
-    "nodata",
-    "overflow",
-    "ovr",
-    "ovf",
-}
 
 # Sizes of numbers that instruments write for a missing point
 MISSING_CODES = {10.0**n - 1 for n in range(3, 8)} | {32767.0, 32768.0, 65535.0, 2147483647.0, 2147483648.0}
@@ -55,7 +40,6 @@ SPACING_RTOL = 0.005  # Relative difference of spacings, one given and one in th
 
 MAX_FILE_BYTES = 1_000_000_000
 
-_NO_DATA = re.compile(r"\bno[ _-]?(?:data|value)\b|\bout of range\b", re.IGNORECASE)
 _COUNTER = re.compile(r"|#|n|i|nr|no|idx|index|id|row|line|point|punkt|sample|pt|number|count|unnamed 0", re.IGNORECASE)
 
 
@@ -302,76 +286,47 @@ def _factor(path: Path, name: str, given: str | None, declared: str | None, what
 
 
 def _table(path: Path) -> _Table:
-    text = text_of(path, MAX_FILE_BYTES, "crop the scan", "a text file of heights")
-    rows = [(i, _NO_DATA.sub("nodata", line).strip(" \r\n\f\ufeff")) for i, line in enumerate(text.splitlines(), 1)]
-    rows = [(i, line) for i, line in rows if line.strip()]
-    data = [_is_data(line) for _, line in rows]
-    if not any(data):
-        raise InputError(f"{path} has no line of numbers.")
-    first, length = _longest_run(data)
-    separator, comma = _dialect(path, [line.strip() for _, line in rows[first : first + min(length, 200)]])
-
-    def split(k: int) -> list[str]:
-        return cells_of(rows[k][1].strip() if not separator.strip() else rows[k][1], separator, path, rows[k][0])
-
-    width = len(split(first))
-    # Rows of the table above its longest part count, if no header stands between, as they may be above a wrong cell.
-    start = next((k for k in range(first) if data[k] and len(split(k)) == width), first)
-    if any(width == 1 or unit_of(line) for _, line in rows[start:first]) and start < first:
-        between = [k for k in range(start, first) if not data[k] and not re.search(r"\d", rows[k][1])]
-        start = between[-1] + 1 if between else start
-    while width > 1 and start and all(map(_is_missing, split(start - 1))) and len(split(start - 1)) >= width:
-        start -= 1
-    body = [k for k in range(start, len(rows)) if not rows[k][1].startswith(("#", "%"))]
-    numbers, cells = [rows[k][0] for k in body], [split(k) for k in body]
-    width = max(_count_filled(row) for row in cells if len(row) <= len(cells[0]))
-    for number, row in zip(numbers, cells, strict=True):
-        if len(row) < width or _count_filled(row) > len(cells[0]):
+    expected = "give lines of heights, with positions or without"
+    found = read_numbers(path, expected, lambda name: unit_of(name) is not None, _numbers_in, MAX_FILE_BYTES)
+    cells, numbers, width = [list(row) for row in found.rows], list(found.numbers), len(found.header)
+    if not any(found.header) and width == 2 and found.separator == "comma":
+        if all(re.fullmatch(r"[+-]?\d+,\d+([eE][+-]?\d+)?", ",".join(row)) for row in cells):
             raise InputError(
-                f"{path}: line {number} has {len(row)} columns where the lines above have {len(cells[0])}; "
-                "correct the line, or check separator and decimal comma."
+                f"{path}: '{','.join(cells[0])}' may be two columns or one number with a decimal comma; write points, or ; "
+                "between columns."
             )
-    cells = [row[:width] for row in cells]  # separators at the end of lines make no columns
-    above = [line.lstrip("#%;!*/ ") for _, line in rows[:start]]
-    names, notes = _names(above, separator or None, width), list[str]()
-    kept = [j for j in range(width) if width >= MIN_POINTS[2] or any(row[j] for row in cells)]
-    if any(row[0] for row in cells) is False and 0 in kept:
-        kept = kept[1:]
-    if names and len(kept) > 1 and _is_counter(names, [row[kept[0]] for row in cells], kept):
+    comma = found.separator != "comma" and any("," in cell for row in cells for cell in row)
+    names, notes = list(found.header), [note for note in found.notes if "between the numbers" in note]
+    if found.units_row:
+        names = [f"{name} ({unit})" if unit else name for name, unit in zip(names, found.units_row, strict=True)]
+    # Columns without a height hold nothing, but in a map they may be points that were missed.
+    kept = [j for j in range(width) if (width >= MIN_POINTS[2] and j > 0) or any(row[j] for row in cells)]
+    if any(names) and len(kept) > 1 and _is_counter(names, [row[kept[0]] for row in cells], kept):
         notes.append("The first column numbers the points and was left out.")
         kept = kept[1:]
     cells = [[row[j] for j in kept] for row in cells]
-    header = header_of(path, above)
+    above = [*(line for _, line in found.above), ";".join(found.header)]
+    header = header_of(path, (line.lstrip("#%;!*/ ") for line in above))
     values, missing_notes = _values(path, cells, numbers, comma=comma, codes=header.codes)
-    if not names and values.shape[1] == 3 and _numbers_rows(values[:, 0]) and _is_even(values[:, 1]):
+    if not any(names) and values.shape[1] == 3 and _numbers_rows(values[:, 0]) and _is_even(values[:, 1]):
         notes.append("The first column numbers the points and was left out.")
         values, cells = values[:, 1:], [row[1:] for row in cells]
-    names = [names[j] for j in kept] if names else [""] * values.shape[1]
+    names = [names[j] for j in kept] if any(names) else [""] * values.shape[1]
     units = [unit_of(name) for name in names]
     if len(units) > 3 and any(units):
         units = [next(unit for unit in units if unit)] * len(units)
     return _Table(values, cells, numbers, names, units, header, (*notes, *missing_notes))
 
 
-def _longest_run(data: list[bool]) -> tuple[int, int]:
-    """Return where the longest run of lines of numbers begins, and its length."""
-    edges = np.flatnonzero(np.diff([0, *data, 0]))
-    begins, lengths = edges[::2], edges[1::2] - edges[::2]
-    longest = int(lengths.argmax())
-    return int(begins[longest]), int(lengths[longest])
-
-
-def _count_filled(row: list[str]) -> int:
-    """Return the number of cells up to the last that is not empty."""
-    filled = [j for j, cell in enumerate(row) if cell]
-    return max(filled, default=0) + 1
-
-
 def _is_missing(cell: str) -> bool:
-    return (
-        cell.strip('"').lower() in MISSING_HEIGHTS
-        or re.fullmatch(r"[*#-]{2,}|[+-]?nan\(?\w*\)?|[+-]?1\.#\w+", cell.lower()) is not None
-    )
+    return is_missing(cell) or cell.lower().lstrip("+-") in ("inf", "infinity")
+
+
+def _numbers_in(line: str) -> int:
+    """Return how many numbers a line holds; none where another cell is neither a number nor missing."""
+    cells = [cell for cell in (part.strip('" ') for part in re.split(r"[;\t, |]+", line)) if cell]
+    numbers = sum(NUMBER_WITH_POINT.fullmatch(cell) is not None for cell in cells)
+    return numbers if numbers + sum(map(_is_missing, cells)) >= len(cells) else 0
 
 
 def _values(
@@ -406,7 +361,7 @@ def _numbers(path: Path, rows: Sequence[Sequence[str]], numbers: Sequence[int], 
             try:
                 values[k, j] = float(cell.replace(",", ".") if comma else cell)
             except ValueError:
-                if cell.lower() not in MISSING_CELLS:
+                if not is_missing(cell):
                     where = f"{path}: line {numbers[k]}, column {j + 1}"
                     raise InputError(f"{where} is {show(cell)}, not a number.") from None
                 values[k, j] = np.nan
@@ -417,61 +372,6 @@ def _missing_note(count: int, verb: str, what: str) -> str:
     if count == 1:
         return f"1 point {verb}s {what} and counts as missing."
     return f"{count} points {verb} {what} and count as missing."
-
-
-def _is_data(line: str) -> bool:
-    cells = [cell for cell in (part.strip('" ') for part in re.split(r"[;\t, ]+", line)) if cell]
-    numbers = [cell for cell in cells if NUMBER_WITH_POINT.fullmatch(cell)]
-    return bool(numbers) and all(cell in numbers or _is_missing(cell) for cell in cells)
-
-
-def _dialect(path: Path, sample: list[str]) -> tuple[str, bool]:
-    """Return separator (empty is white space) and whether the comma is the decimal sign."""
-    if all(";" in line for line in sample):
-        return ";", any("," in line for line in sample)
-    if all("\t" in line and not re.search(r"[^\t] +[^\t ]", line) for line in sample):
-        return "\t", any("," in line for line in sample)
-    if not any("," in line for line in sample):
-        return "", False
-    if all(re.fullmatch(r"\S+(\s+\S+)+", line) and not re.search(r",\s|\s,", line) for line in sample):
-        return "", True
-    if all(re.fullmatch(r"[+-]?\d+,\d+([eE][+-]?\d+)?", line) for line in sample):
-        raise InputError(
-            f"{path}: '{sample[0]}' may be two columns or one number with a decimal comma; write points, or ; between columns."
-        )
-    return ",", False
-
-
-def _names(header: list[str], separator: str | None, width: int) -> list[str]:
-    """Return the names of the columns, from the last header lines with as many cells; units may stand in a row below."""
-    found: list[str] = []
-    for line in reversed(header):
-        for mark in dict.fromkeys((separator, "\t", ";", ",", None)):
-            if mark is None and re.search(r"[\[(]", line):
-                parts = re.findall(r"[^\[\](]+?\s*[\[(][^\])]*[\])]", line)
-            else:
-                parts = line.split(mark)
-            cells = [cell.strip().strip('"').strip() for cell in parts]
-            while len(cells) > width and not cells[-1]:
-                cells.pop()
-            if len(cells) + 1 == width and separator != mark and mark is None:
-                cells = ["", *cells]  # an index without a name
-            if len(cells) == width and any(cells) and not any(re.match(r"[+-]?\d", cell) for cell in cells):
-                break
-        else:
-            if found:
-                return found
-            continue
-        if found:
-            return [f"{name} ({unit_of(unit)})" if unit_of(unit) else name for name, unit in zip(cells, found, strict=True)]
-        only_units = [unit_of(cell) for cell in cells]
-        if all(re.fullmatch(r"[\[(]?\s*[^\W\d_]{0,12}\s*[\])]?", cell) for cell in cells) and all(
-            unit is not None or not cell for unit, cell in zip(only_units, cells, strict=True)
-        ):
-            found = cells  # perhaps the row of units below the names
-            continue
-        return cells
-    return found
 
 
 def _is_counter(names: list[str], cells: list[str], kept: list[int]) -> bool:
