@@ -40,7 +40,7 @@ def row(name, command):
         if each.kind is not each.KEYWORD_ONLY:
             word = f"{each.name.upper()}{'...' * (each.kind is each.VAR_POSITIONAL or 'list' in str(each.annotation))}"
             words.append(word if each.default is each.empty else f"[{word}]")
-    said = re.split("[:;.\n]", inspect.getdoc(command))[0].replace("|", r"\|")
+    said = re.split("[:;,.\n]", inspect.getdoc(command))[0].replace("|", r"\|")
     shown = f"`{' '.join(words)}`"
     return f"| {f'[{shown}]({READ_MORE[name]})' if name in READ_MORE else shown} | {said} |\n"
 
