@@ -16,7 +16,7 @@ from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film
 from stribeck.numerics.newton import root_between
-from stribeck.numerics.panels import Mesh, adapt, base_edges, graded, highest_degree
+from stribeck.numerics.panels import Mesh, adapt, base_edges, graded, highest_degree, reference
 from stribeck.numerics.settings import (
     COARSE_RTOL,
     COARSE_STEP,
@@ -99,7 +99,9 @@ def mesh_for(
     pressure_scale = 1.0
     if turns_sharply and isinstance(guess, State):  # where no load feels it flux and drag do
         pressure_scale = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
-    highest = highest_degree(order)
+    highest, to_exit = highest_degree(order), reference(order).left_end[::-1]
+    # At the exit; a rigid guess has no gradient there.
+    at_exit = pressure_scale * guess.fields(np.array([np.nextafter(0.0, -1.0)]))[1:].sum()
     thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
     sheared = 0.0
     if closed_at is not None and tolerance < COARSE_RTOL and isinstance(guess, State) and float(guess.gap.min()) < closed_at:
@@ -138,6 +140,10 @@ def mesh_for(
         shape = shape * np.where(read_off, np.maximum(weight, parts), weight)[..., None]
         shear = (np.exp(-found[0]) * central_gap).reshape(nodal)
         fields = [stretch * pressures.reshape(2, *nodal), shape[None], shear[None]]
+        if ends and stretch[0, 0] == 1.0:  # the pressure may turn to that of the cavity in a layer between the last nodes
+            before_exit = np.abs(centres + half_widths) <= HALF_DIGITS * half_widths
+            missed = np.abs(fields[0][1] @ to_exit - at_exit * width / edge_scale)
+            fields.append(((before_exit * missed)[:, None] * highest)[None])
         if fractional and stretch[0, 0] != 1.0:  # what falls off with a broken power is no polynomial in 1/x
             fields[0] /= NEGLIGIBLE
         jumps = jump(gap, fluid) if jump is not None and stretch[0, 0] == 1.0 else None
