@@ -88,11 +88,12 @@ def safety_of(level: Level) -> tuple[float, float]:
     # Where roughness closes the flow, or gas goes by differences of first order, both meshes err by nearly the same.
     if equations.order < 2.0 or (closed_at is not None and level.unknowns.gap.min() < NEAR_MINIMUM * closed_at):
         return SAFETY, 1.0
-    if breaks or film.uses_speed:
-        return 1.0, 1.0
     # Before the last coefficients of the gap are as small as first meshes are chosen for, errors do not fall yet: either mesh
     # may be the nearer one, by chance.
-    return SMOOTH_SAFETY if max(gap_tails(level)) <= NEGLIGIBLE**2 else SAFETY, NEGLIGIBLE
+    falls = max(gap_tails(level)) <= NEGLIGIBLE**2
+    if breaks or film.uses_speed:
+        return 1.0 if falls else SAFETY, 1.0
+    return SMOOTH_SAFETY if falls else SAFETY, NEGLIGIBLE
 
 
 def gap_tails(level: Level) -> tuple[float, float]:
