@@ -126,21 +126,20 @@ def judged(seed: int, number: int, rtol: float, largest: float = math.inf) -> di
 def table(rows: list[dict[str, Any]]) -> str:
     """Return the counts by kind."""
     lines = [
-        "| states | number | solved | judged | error covered | worst error/stated | minimum film covered | worst"
-        " | CPU s, median | most |",
-        "|---|---|---|---|---|---|---|---|---|---|",
+        "| states | number | solved | judged | error covered | worst error/stated | CPU s, median | most |",
+        "|---|---|---|---|---|---|---|---|",
     ]
     for kind in (*dict.fromkeys(KINDS), "all"):
         some = [row for row in rows if kind in (row["kind"], "all")]
         checked = [row for row in some if "ratio" in row]
         if not checked:
             continue
-        ratios, minima = (np.array([row[name] for row in checked]) for name in ("ratio", "minimum_ratio"))
+        ratios = np.array([row["ratio"] for row in checked])
         seconds = [row["seconds"] for row in some]
         solved = sum(row["outcome"] == "CONVERGED" for row in some)
         lines.append(
             f"| {kind} | {len(some)} | {solved} | {len(checked)} | {np.mean(ratios <= 1):.1%} | {ratios.max():.1f}"
-            f" | {np.mean(minima <= 1):.1%} | {minima.max():.1f} | {np.median(seconds):.1f} | {max(seconds):.0f} |"
+            f" | {np.median(seconds):.1f} | {max(seconds):.0f} |"
         )
     return "\n".join(lines)
 
