@@ -5,19 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 
-from stribeck._types import Array, Flags
-from stribeck.bench.loop import Loop, read_loop
+from stribeck._types import Array, Flags, Indices
 from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.cases.reading import load_case
 from stribeck.contacts.geometries import LineContact
-from stribeck.files.datasets import Column
+from stribeck.files.columns import Column, read_columns
 from stribeck.files.results import Exported, Labelled
-from stribeck.files.writing import PathLike
+from stribeck.files.writing import PathLike, path_of
 from stribeck.fits.fit import names_to_fit
 from stribeck.fits.free_inputs import FreeInput, free_inputs
 from stribeck.fits.least_squares import Minimum, settle
@@ -33,7 +33,44 @@ from stribeck.quantities.units import InputError, show
 from stribeck.strokes.result import Stroke
 from stribeck.strokes.stroke import Inlet, stroke
 
-__all__ = ["LoopFit", "fit_loop"]
+FRICTION = Column(r"friction|friction coefficient|coefficient of friction|cof|mu|reibwert", "number")
+
+# What friction may be measured over, the first that is there
+OVER = {
+    "time": Column(r"(?:(?:elapsed|test|total|cycle) )?(?:time|zeit)|t", "time", is_bare=True),
+    "position": Column(r"position|displacement|path|stroke position|weg|x", "length", is_bare=True),
+}
+
+ADVICE = "a loop has a column 'friction', with the sign of the force against the motion, and one 'position [mm]' or 'time [s]'"
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """The rows of a measured friction loop."""
+
+    path: str
+    over: str  # "position" or "time", what friction was measured over
+    values: Array  # [m or s]
+    friction: Array  # With the sign of the force against the motion [-]
+    rows: Indices  # Row of the file in which each stands
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return len(self.friction)
+
+
+def read_loop(path: PathLike) -> Loop:
+    """Read a friction loop: a column of position or time, and one of the friction coefficient with its sign."""
+    path = path_of(path)
+    if not Path(path).is_file():
+        raise InputError(f"{path}: there is no such file.")
+    found, rows = read_columns(path, ADVICE, *({name: over, "friction": FRICTION} for name, over in OVER.items()), gaps=True)
+    friction = found.pop("friction")
+    [(over, values)] = found.items()
+    if not (np.any(friction > 0) and np.any(friction < 0)):
+        raise InputError(f"{path}: friction has one sign; a loop has friction of the way back below zero.")
+    return Loop(str(path), over, values, friction, rows)
+
 
 SLOW = 0.1  # Speed over the largest below which a row is left out: at a reversal the rig gives way before the surfaces slide
 SAME_LENGTH = 0.05  # Part by which the measured path may be longer or shorter than the motion
@@ -86,7 +123,7 @@ class LoopFit(WithFittedInputs, Exported, Told, ByValue):
 
     def _labelled(self) -> Labelled:
         unit = "m" if self.over == "position" else "s"
-        columns: dict[str, Column] = {
+        columns: dict[str, Any] = {
             self.over: ("row", self.values, unit, f"{self.over} of the row"),
             "measured_friction": ("row", self.measured, "1", "measured friction coefficient"),
             "fitted_friction": ("row", self.friction, "1", "fitted friction coefficient"),

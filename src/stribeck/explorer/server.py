@@ -6,7 +6,6 @@ import os
 import secrets
 import socket
 import sys
-import threading
 from functools import partialmethod
 from pathlib import Path
 from types import FrameType
@@ -18,10 +17,10 @@ from stribeck.explorer.downloads import KINDS, examples, name_of, shown_name
 from stribeck.explorer.guard import Guard, check_host
 from stribeck.explorer.inputs.inputs import Inputs, from_case
 from stribeck.explorer.inputs.url import MAX_URL_LENGTH, check_length, decode
-from stribeck.explorer.pools import FILES, run, set_aside
+from stribeck.explorer.pools import FILES, run
 from stribeck.explorer.words import words_page
 from stribeck.files.writing import MissingExtraError
-from stribeck.quantities.units import InputError, to_si
+from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
     from nicegui.server import Server
@@ -32,8 +31,6 @@ DEFAULT_PORTS = range(8765, 8815)  # Ports that are tried where none is asked fo
 OPENING_TIMEOUT = 120.0  # Time that a page may wait until its address is read, behind those of other pages [s].
 
 RECONNECT_TIMEOUT = 30.0  # Time after which a page without browser is forgotten [s].
-
-PREPARE_AFTER_SECONDS = 5.0  # Time after the start, when the first page stands, at which slow preparations begin [s].
 
 # Messages kept for a browser whose connection was interrupted; each may hold all charts.
 MAX_RESENT_MESSAGES = 20
@@ -61,7 +58,6 @@ def serve(case: Path | None = None, port: int | None = None, browser: bool = Tru
     address = f"http://{f'[{host}]' if ':' in host else host}:{chosen}/?token={token}"
     build(start, chosen, token)
     nicegui.app.on_startup(lambda: print(f"stribeck explorer: {address} (Ctrl-C ends it)", flush=True))
-    nicegui.app.on_startup(prepare)
     # NiceGUI takes the number of a port, which another program may have taken by then, and no socket.
     Server.run = partialmethod(Server.run, sockets=[listening])  # type: ignore[method-assign,assignment]
     Server.handle_exit = _end  # type: ignore[method-assign,assignment]
@@ -89,14 +85,6 @@ def _end(server: Server, number: int, frame: FrameType | None) -> None:
         os._exit(0)
     server.should_exit = True
     server._captured_signals.append(number)  # which Uvicorn raises again when it has ended
-
-
-def prepare() -> None:
-    """Prepare what a page would wait for: in the background all units, of which the first odd one takes pint half a second."""
-    set_aside()
-    units = threading.Timer(PREPARE_AFTER_SECONDS, to_si, ("1 inch", "length", "unit"))
-    units.daemon = True
-    units.start()
 
 
 def build(start: Inputs, port: int, token: str) -> None:

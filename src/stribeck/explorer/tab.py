@@ -7,6 +7,7 @@ last value wins and a slow machine shows fewer pictures instead of late ones.
 from __future__ import annotations
 
 import asyncio
+import gc
 import inspect
 import time
 import weakref
@@ -26,7 +27,7 @@ from stribeck.explorer.inputs.history import History
 from stribeck.explorer.inputs.inputs import Inputs
 from stribeck.explorer.measured import MEANINGS, Measured, fit_measured, free_inputs
 from stribeck.explorer.page import UPDATING_TEXT, Page, Problems, form_of, parts_of
-from stribeck.explorer.pools import FILES, Threads, run, tidy_soon
+from stribeck.explorer.pools import FILES, Threads, run
 from stribeck.explorer.table import without_rtol
 from stribeck.explorer.uploads import SCAN_ENDINGS, Scan, read_file, with_scan
 from stribeck.files.writing import MissingExtraError
@@ -435,7 +436,7 @@ class Tab:
         """Stop what runs for a page that is gone."""
         self.closed = True
         self.threads.close()
-        tidy_soon()
+        FILES.submit(gc.collect)  # a page is a net of objects that refer to each other, which Python finds seldom
         if self.resting is not None:
             self.resting.cancel()
 
