@@ -56,7 +56,7 @@ class Series:
 
 def passes_of(raw: Raw, per_decade: float) -> Series:
     """Return the passes of a file, with what was left out and why."""
-    speed, friction, _ = directions(raw.speed, raw.friction)
+    speed, friction = directions(raw.speed, raw.friction)
     changes = np.zeros(len(speed), dtype=bool)
     changes[1:] = raw.curve[1:] != raw.curve[:-1]
     if raw.steps:

@@ -32,19 +32,15 @@ class Part:
         return np.arange(self.first, self.end)
 
 
-def directions(speed: Array, friction: Array) -> tuple[Array, Array, bool]:
-    """Return the speed with its sign, friction positive along the motion, and whether the force has a sign."""
+def directions(speed: Array, friction: Array) -> tuple[Array, Array]:
+    """Return the speed with its sign, and friction positive along the motion."""
     turns = _runs(np.sign(friction))
     both = (friction > 0).any() and (friction < 0).any()
     if not (speed < 0).any() and both and float(np.median([end - first for first, end in turns])) >= FEWEST:
         speed = speed * np.where(friction < 0, -1.0, 1.0)
-    if (speed < 0).any() and both:
-        along = np.sign(speed) * friction
-        signed = bool(abs(np.sum(along)) > abs(np.sum(friction)))
-    else:
-        along, signed = friction, False
+    along = np.sign(speed) * friction if (speed < 0).any() and both else friction
     polarity = 1.0 if np.sum(along) >= 0 else -1.0
-    return speed, polarity * along, signed
+    return speed, polarity * along
 
 
 def parts_of(speed: Array, changes: Flags) -> list[Part]:

@@ -205,18 +205,20 @@ class Checks(Exported, Told):
 
 
 def verdict_of(value: float, fine: float, outside: float = math.inf) -> Verdict:
-    """Return the verdict on a value that is fine up to one bound and outside beyond another."""
+    """Return the verdict on a value that is fine up to one bound and outside beyond another, which may be the lower one."""
+    if outside < fine:
+        value, fine, outside = -value, -fine, -outside
     if value <= fine:
         return "fine"
     return "doubtful" if value <= outside else "outside"
 
 
 def check_against_limits(
-    name: str, value: float, fine: float, outside: float, begin: str, meanings: Mapping[Verdict, str]
+    name: str, value: float, fine: float, outside: float, begin: str, meanings: Mapping[Verdict, str], unit: str = ""
 ) -> Check:
     """Return the check of a number that is fine up to one bound and outside beyond another, with what each verdict means."""
     verdict = verdict_of(value, fine, outside)
-    return Check(name, value, fine, verdict, begin + meanings[verdict])
+    return Check(name, value, fine, verdict, begin + meanings[verdict], unit, at_least=outside < fine)
 
 
 def number_text(value: float, unit: str) -> str:

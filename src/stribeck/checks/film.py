@@ -157,14 +157,13 @@ def stroke(subject: Subject) -> Check | None:
     if length is None:
         return None
     ratio = length / subject.contact.hertz.half_width
-    verdict: Verdict = "fine" if ratio >= STROKE_FINE else "doubtful" if ratio >= STROKE_OUTSIDE else "outside"
-    meaning = {
+    meanings: dict[Verdict, str] = {
         "fine": "the film follows the speed, but for the ends of the stroke.",
         "doubtful": "near its ends the film lags behind the speed, and friction is off by tens of per cent.",
         "outside": "the film of the fast phase stays at its ends. A curve at steady speeds is not its friction.",
-    }[verdict]
-    about = f"The stroke is {ratio:.3g} times the {subject.contact.WIDTH}: "
-    return Check("stroke over a", ratio, STROKE_FINE, verdict, about + meaning, at_least=True)
+    }
+    begin = f"The stroke is {ratio:.3g} times the {subject.contact.WIDTH}: "
+    return check_against_limits("stroke over a", ratio, STROKE_FINE, STROKE_OUTSIDE, begin, meanings)
 
 
 def molecules(subject: Subject) -> Check:
@@ -173,15 +172,14 @@ def molecules(subject: Subject) -> Check:
     usual = OIL_MOLECULE_SIZE if subject.contact.viscosity > SMALL_MOLECULE_VISCOSITY else WATER_MOLECULE_SIZE
     size = usual if given is None else given
     film = _minimum_film(subject)
-    limit = MOLECULES_FINE * size
-    verdict: Verdict = "fine" if film >= limit else "doubtful" if film >= MOLECULES_OUTSIDE * size else "outside"
-    meaning = {
+    meanings: dict[Verdict, str] = {
         "fine": "the fluid is a continuum.",
         "doubtful": "molecular layering begins to matter.",
         "outside": "a viscosity means little there.",
-    }[verdict]
-    about = f"The minimum film is {number_text(film, 'm')}, {film / size:.2g} molecules of {number_text(size, 'm')}"
-    return Check("film against molecules", film, limit, verdict, f"{about}: {meaning}", "m", at_least=True)
+    }
+    begin = f"The minimum film is {number_text(film, 'm')}, {film / size:.2g} molecules of {number_text(size, 'm')}: "
+    limits = MOLECULES_FINE * size, MOLECULES_OUTSIDE * size
+    return check_against_limits("film against molecules", film, *limits, begin, meanings, "m")
 
 
 def heating(subject: Subject) -> Check:

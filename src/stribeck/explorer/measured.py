@@ -6,7 +6,7 @@ import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 from stribeck._types import Array
@@ -77,10 +77,10 @@ def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object]
 
 
 @contextmanager
-def _file_of(name: str, content: bytes) -> Iterator[Path]:
+def lent_file(name: str, content: bytes) -> Iterator[Path]:
     """Lend a file with a content, never under the name that came with it but in sentences."""
     with tempfile.TemporaryDirectory(prefix="stribeck-") as folder:
-        path = Path(folder) / "curve.csv"
+        path = Path(folder) / f"file{PurePath(name).suffix}"
         path.write_bytes(content)
         try:
             yield path
@@ -90,7 +90,7 @@ def _file_of(name: str, content: bytes) -> Iterator[Path]:
 
 def headers_of(name: str, content: bytes) -> list[str]:
     """Return the names of the columns of a file."""
-    with _file_of(name, content) as path:
+    with lent_file(name, content) as path:
         return list(read_table(path, knows=known_name).written)
 
 
@@ -102,7 +102,7 @@ def read_measured(name: str, content: bytes, contact: Contact, asked: Mapping[st
     """
     settings = FitSettings.of(contact)
     settings = replace(check_fit_table(dict(asked or {}), settings.geometry), slide_to_roll=settings.slide_to_roll)
-    with _file_of(name, content) as path:
+    with lent_file(name, content) as path:
         data = read_measurements(path, settings)
     found, rule = [], RULES[contact.groups.geometry]
     for k, (curve, inputs) in enumerate(zip(data.curves, data.inputs, strict=True)):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import tempfile
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,7 +14,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.explorer.downloads import read_case, shown_name
 from stribeck.explorer.inputs.inputs import Inputs, from_case
 from stribeck.explorer.inputs.url import check_length
-from stribeck.explorer.measured import headers_of, read_measured
+from stribeck.explorer.measured import headers_of, lent_file, read_measured
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError
 from stribeck.surfaces.analysis import analyse
@@ -37,24 +36,17 @@ class Scan:
 def read_scan(name: str, content: bytes) -> Scan:
     """Return the surface of a file of heights."""
     shown = shown_name(name)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / shown
-        path.write_bytes(content)
-        try:
+    try:
+        with lent_file(shown, content) as path:
             surface = analyse(read_topography(path))
-        except InputError as problem:
-            raise InputError(_without_options(str(problem).replace(str(path), shown))) from None
+    except InputError as problem:  # without advice on options of the command, which the page does not have
+        raise InputError(re.sub(r"add --[^;]*?, or write it", "write it", str(problem))) from None
     alpha, beta = surface.limits
     notes = f" {' '.join(surface.notes)}" if surface.notes else ""
     height = format_si(surface.roughness.h_rms, "length")
     limit = f"alpha {alpha.value:.3g} ({alpha.interval}), beta {beta.value:.3g} ({beta.interval}), at 95 %"
     report = f"Surface of {shown}: rms height {height}, {limit}.{notes}"
     return Scan(tomllib.loads(surface_table(surface, has_errors=False))["surface"], report.replace(str(path), shown))
-
-
-def _without_options(sentence: str) -> str:
-    """Return a sentence without advice on options of the command line, which the page does not have."""
-    return re.sub(r"add --[^;]*?, or write it", "write it", sentence)
 
 
 def with_scan(now: Inputs, scan: Scan) -> Inputs:
