@@ -18,7 +18,7 @@ from stribeck.fluids.description import Fluid, as_flow_factors, as_fluid
 from stribeck.fluids.laws import DensityLaw, FilmUnits, FlowFactors, RateLaw, ViscosityLaw
 from stribeck.profiles.check_profile import as_profile
 from stribeck.profiles.profile import Parabola, Profile, Undeformed, undeformed
-from stribeck.profiles.shape import Shape
+from stribeck.profiles.shapes import Shape
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.registry import laws_of
 from stribeck.quantities.schema import Input, numbers_of

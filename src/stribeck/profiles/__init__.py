@@ -3,12 +3,8 @@
 from stribeck.quantities.lazy import lazy_names as _lazy_names
 
 _HOMES = {
-    "cylinder": ("Cylinder",),
     "dry": ("DryContact", "dry_contact"),
-    "grooved": ("Grooved",),
-    "land": ("Land",),
-    "lip": ("Lip",),
+    "shapes": ("Cylinder", "Grooved", "Land", "Lip", "Worn"),
     "table": ("Table", "from_pressure"),
-    "worn": ("Worn",),
 }
 __all__, __getattr__, __dir__ = _lazy_names(__name__, _HOMES, has_laws=True)

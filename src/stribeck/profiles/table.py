@@ -17,7 +17,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from stribeck._types import Array
-from stribeck.profiles.shape import Shape
+from stribeck.profiles.shapes import Shape
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import InputError, show, to_si

@@ -21,19 +21,21 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.number import Number, plain_numbers
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.units import InputError, show, to_si
-from stribeck.surfaces.departures import Departures, departure_notes, departures
+from stribeck.surfaces.departures import Departures, departure_notes, departures, height_numbers
 from stribeck.surfaces.detrend import Form, Trend, detrended
 from stribeck.surfaces.fit_result import Estimate, SelfAffineFit
-from stribeck.surfaces.height_parameters import height_numbers
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum, Window, power_spectrum
-from stribeck.surfaces.notes import fit_notes, spike_notes
-from stribeck.surfaces.self_affine_fit import fit_self_affine
+from stribeck.surfaces.self_affine_fit import MAX_DEVIANCE_RATIO, fit_self_affine
 from stribeck.surfaces.topography import Topography
 
 __all__ = ["Surface", "analyse"]
 
 # Ends of a self-affine spectrum, as lengths of waves.
 WAVES = {"q0": "longest wavelength", "roll_off": "roll-off wavelength", "q1": "shortest wavelength"}
+
+HEIGHT_RATIO_NOTE = 1.3  # Ratio of the rms heights of scan and fit from which a note says that they differ
+
+REPAIR_NOTE = 0.05  # Relative change of the rms height of the scan by the repair of spikes from which a note warns
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -254,11 +256,71 @@ def analyse(
     found = departures(flat, measured, fit.roughness.hurst)
     notes = (
         *flat.notes,
-        *spike_notes(spikes, _rms(flat), spiked),
+        *_spike_notes(spikes, _rms(flat), spiked),
         *departure_notes(flat, found),
-        *fit_notes(flat, shape, measured, fit),
+        *_fit_notes(flat, shape, measured, fit),
     )
     return Surface(flat, shape, measured, fit, gamma, found, spikes, spiked, window, notes)
+
+
+def _spike_notes(spikes: int, repaired: float, spiked: float) -> list[str]:
+    """Return sentences on the repair of spikes."""
+    if spikes == 0:
+        return []
+    change = f"{format_si(spiked, 'length')} with its spikes and {format_si(repaired, 'length')} without"
+    notes = [f"The rms height of the scan is {change}."]
+    if abs(repaired - spiked) > REPAIR_NOTE * repaired:
+        notes.append(
+            f"The repair of spikes changed the rms height by {100 * (spiked - repaired) / repaired:.0f} %: look at the scan, "
+            "and keep them (--keep-spikes, keep_spikes=True) if they are asperities or dust that touches."
+        )
+    return notes
+
+
+def _fit_notes(topography: Topography, body: Form, measured: MeasuredSpectrum, fit: SelfAffineFit) -> list[str]:
+    """Return sentences on what the fit does not see, or does not fit."""
+    notes = []
+    if "roll_off" not in fit.found and "q0" not in fit.found:
+        notes.append(
+            "No roll-off within the scan: h_rms, alpha and beta are for wavelengths up to "
+            f"{format_si(2 * math.pi / fit.roughness.q0, 'length')}, and h_rms and beta depend on the size of the "
+            "scan; measure a larger area."
+        )
+    if "q1" not in fit.found:
+        notes.append(
+            f"The spectrum goes on beyond {format_si(2 * math.pi / measured.highest, 'length')} ({measured.highest_reason}): "
+            "slope, curvature and contact area would grow with finer sampling, and alpha would fall. beta would rise by up to "
+            f"{100 * (fit.beta_of_shorter_waves - 1):.2g} % if the power law goes on to 1 nm; the intervals allow for that."
+        )
+    if "noise" in fit.found:
+        notes.append("The spectrum flattens at short wavelengths as instrument noise does; the noise was subtracted.")
+    if fit.deviance > MAX_DEVIANCE_RATIO:
+        notes.append(
+            f"The spectrum is not self-affine: its deviance is {fit.deviance:.1f} times that of chance, and the errors were "
+            "widened by the root of it; compare alpha and beta with those of the measured spectrum."
+        )
+    H = fit.roughness.hurst
+    if not 0.02 < H < 0.999:
+        shape_of = "flatter" if H < 0.5 else "steeper"
+        notes.append(
+            f"The Hurst exponent is at the end of its range: the spectrum is {shape_of} than that of self-affine roughness."
+        )
+    scan, fitted = float(np.sqrt(np.mean(topography.heights**2))), fit.roughness.h_rms
+    if not 1 / HEIGHT_RATIO_NOTE < fitted / scan < HEIGHT_RATIO_NOTE:
+        notes.append(
+            f"The rms height of the scan is {format_si(scan, 'length')}, that of the fit {format_si(fitted, 'length')}: "
+            "noise, waves too long for the fit, or a spectrum of another shape make the difference."
+        )
+    if not topography.is_line:
+        ratio = max(topography.spacing) / min(topography.spacing)
+        if ratio > 2:
+            notes.append(f"Steps along the two axes differ {ratio:.1f} times; the larger one limits the short wavelengths.")
+    radius = body.radius
+    if radius is not None:
+        error = body.radius_error(fit.roughness, topography)
+        if error is not None and error > 0.5 * radius:
+            notes.append("The fitted curvature is no larger than roughness alone produces by chance: the surface is flat.")
+    return notes
 
 
 def _of_array(heights: Any, spacing: Any) -> Topography:

@@ -1,8 +1,12 @@
-r"""How a scan departs from the theory's surface, which is isotropic and Gaussian, and from sizes that instruments have.
+r"""Parameters of the heights of a scan, and how it departs from the theory's surface, which is isotropic and Gaussian.
 
-.. math:: A = \frac{\langle C\, e^{2 i \theta} \rangle}{\langle C \rangle}
+.. math::
 
-is zero on average for an isotropic surface, with a mean square of one over the number of modes.
+    S_a = \langle |z| \rangle, \quad S_{ku} = \frac{\langle z^4 \rangle}{\langle z^2 \rangle^2}, \quad
+    S_{dq}^2 = \langle |\nabla z|^2 \rangle, \quad A = \frac{\langle C\, e^{2 i \theta} \rangle}{\langle C \rangle}
+
+about the removed trend, without a filter of waves (ISO 25178-2, ISO 4287); the slope is between neighbouring points.  A is
+zero on average for an isotropic surface, with a mean square of one over the number of modes.
 """
 
 from __future__ import annotations
@@ -13,13 +17,14 @@ from typing import Annotated
 
 import numpy as np
 
+from stribeck._types import Array
 from stribeck.quantities.docstrings import Described
 from stribeck.quantities.formats import format_si
-from stribeck.surfaces.height_parameters import moment
+from stribeck.quantities.number import Number
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum
 from stribeck.surfaces.topography import Topography
 
-__all__ = ["Departures", "departures", "departure_notes"]
+__all__ = ["Departures", "departure_notes", "departures", "height_numbers"]
 
 MIN_SIGNIFICANCE = 9.0  # ``n |A|^2`` above which a texture is not chance: exp(-9), once in 8000 isotropic surfaces
 
@@ -46,6 +51,30 @@ class Departures(Described):
     direction: Annotated[float | None, "angle of the texture to the first axis, 0 to pi; None if it is not significant", "rad"]
     skewness: Annotated[float, "third moment of the heights over the cube of their rms; 0 if Gaussian", "1"]
     skewness_error: Annotated[float, "its standard error for Gaussian heights with the correlation of the scan", "1"]
+
+
+def moment(heights: Array, order: int) -> tuple[float, float]:
+    """Return skewness (3) or kurtosis (4) of heights, and its standard error for Gaussian ones correlated as these are."""
+    z = heights - heights.mean()
+    rms = float(z.std())
+    # Autocorrelation: the scatter of moments of correlated Gaussian heights is a sum of its powers.
+    rho = np.fft.ifftn(np.abs(np.fft.fftn(z)) ** 2).real / (z.size * rms**2)
+    variance = math.factorial(order) * float(np.sum(rho**order)) / z.size
+    return float(np.mean((z / rms) ** order)), math.sqrt(max(variance, 0.0))
+
+
+def height_numbers(topography: Topography) -> tuple[Number, ...]:
+    """Return the parameters of the heights, those of moments with the error that a Gaussian surface has."""
+    z, letter = topography.heights - topography.heights.mean(), "R" if topography.is_line else "S"
+    steps = [np.diff(z, axis=axis) / step for axis, step in enumerate(topography.spacing)]
+    slope = math.sqrt(sum(float(np.mean(each**2)) for each in steps))
+    return (
+        Number("mean_deviation", f"mean deviation {letter}a", "mean deviation of the heights of the scan about its trend",
+               float(np.mean(np.abs(z))), unit="m", dimension="length"),
+        Number("kurtosis", f"kurtosis {letter}ku", "kurtosis of the heights; 3 if Gaussian", *moment(topography.heights, 4)),
+        Number("scan_rms_slope", f"rms slope {letter}dq between points", "rms slope of the scan between neighbouring points",
+               slope),
+    )  # fmt: skip
 
 
 def departures(topography: Topography, measured: MeasuredSpectrum, hurst: float) -> Departures:
