@@ -9,6 +9,7 @@ Source: ours, with phi of [BP] Appendix D; theory.md, section 10.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -35,6 +36,7 @@ FILM_COEFFICIENTS = (0.5996, 0.8093, 0.3581, 0.09829, 0.1302, 0.7041, 2.677, 1.0
 SUM_COEFFICIENTS = (2.358, -0.3874, -0.9880, 0.05973)  # Fitted coefficients of :func:`_log_speed`.
 
 MAX_STEPS = 60  # Steps of the inversion; 6 are usual.
+STEP = 1e-6  # Difference in ln X of its slopes.
 
 
 @formula(
@@ -66,7 +68,7 @@ def speed_at_fluid_share(groups: Groups, share: float = 0.5) -> Value:
     The letters are the fitted coefficients of wedge, edge, film and sum.
     """
     F, kappa = np.asarray(groups.load), np.asarray(groups.relative_roughness)
-    found = np.exp(_log_speed(odds_of(share), F, kappa, phi_of(F, "closed")))
+    found = np.exp(_log_speed(odds_of(share), F, kappa))
     return np.where(np.equal(groups.roughness, 0), math.nan, found)[()]
 
 
@@ -93,10 +95,27 @@ def contact_load_share(groups: Groups) -> Value:
 
 def log_odds(groups: Groups) -> Array:
     """Return ln X, fluid over contact share: -inf at rest, inf without roughness, nan from load 1 on."""
+    return odds_at(groups, _log_speed)
+
+
+def odds_at(groups: Groups, log_speed: Callable[[Array, Array, Array], Array], max_roughness: float = math.inf) -> Array:
+    """Return ln X at which a law of ln(speed), of ln X, F and kappa, gives the speed of the groups: by Newton in brackets."""
     lambda_, F, kappa = np.broadcast_arrays(groups.speed, groups.load, groups.relative_roughness)
-    found = np.where(F < 1, np.where(lambda_ > 0, math.inf, -math.inf), math.nan)
-    inside = (lambda_ > 0) & (kappa > 0) & (F < 1)
-    found[inside] = _inverse(np.log(lambda_[inside]), F[inside], kappa[inside])
+    has_value = (F < 1) & ((lambda_ == 0) | (kappa <= max_roughness))
+    found = np.where(has_value, np.where(lambda_ > 0, math.inf, -math.inf), math.nan)
+    inside = has_value & (lambda_ > 0) & (kappa > 0)
+    wanted, F, kappa = np.log(lambda_[inside]), F[inside], kappa[inside]
+    low, high = np.full(F.shape, -300.0), np.full(F.shape, 700.0)
+    x = np.zeros(F.shape)
+    for _ in range(MAX_STEPS):
+        off = log_speed(x, F, kappa) - wanted
+        low, high = np.where(off < 0, x, low), np.where(off < 0, high, x)
+        newton = x - off * STEP / (log_speed(x + STEP, F, kappa) - wanted - off)
+        moved = np.where((newton > low) & (newton < high), newton, 0.5 * (low + high))
+        if np.all(np.abs(moved - x) <= 1e-12 * (1 + np.abs(x))):
+            break
+        x = moved
+    found[inside] = x
     return found
 
 
@@ -113,21 +132,21 @@ def gaps(odds: Array, F: Array) -> tuple[Array, Array]:
     return G, G + LOG_SHAPE_RATIO
 
 
-def _log_speed(odds: Array, F: Array, kappa: Array, phi: Value) -> Array:
+def _log_speed(odds: Array, F: Array, kappa: Array) -> Array:
     """Return the logarithm of the speed for ln X."""
     s1, s2, s3, s4 = SUM_COEFFICIENTS
     G, H = gaps(odds, F)
     m = s1 + s2 * H / (1 + H) + s3 * kappa**s4
-    return np.asarray(-np.logaddexp(-m * _wedge(odds, G, H, F, kappa, phi), -m * _film(H, kappa)) / m)
+    return np.asarray(-np.logaddexp(-m * _wedge(odds, G, H, F, kappa), -m * _film(H, kappa)) / m)
 
 
-def _wedge(odds: Array, G: Array, H: Array, F: Array, kappa: Array, phi: Value) -> Array:
+def _wedge(odds: Array, G: Array, H: Array, F: Array, kappa: Array) -> Array:
     """Return the logarithm of the speed of the wedge."""
     w1, w2, w3, w4 = WEDGE_COEFFICIENTS
     e1, e2, e3 = EDGE_COEFFICIENTS
     more = np.logaddexp(0.0, odds)  # ln(1 + X)
     G_0 = -0.5 * np.log(F)
-    at_rest = -0.5 * np.log(phi) - math.log(w1) - w2 * np.log(G_0)
+    at_rest = -0.5 * np.log(phi_of(F, "closed")) - math.log(w1) - w2 * np.log(G_0)
     found = 2 * np.log(kappa) + 0.5 * (odds + more) + math.log(w1) + w2 * np.log(G) + at_rest * np.exp(-(w3 + w4 * G_0) * more)
     edge = (e1 + e2 * H) * np.exp(-e3 * more) * kappa ** (2 / 3)
     return np.asarray(found - np.where(edge > 0, 0.5 * np.log1p(2 * np.maximum(edge, 0.0)), edge))
@@ -157,21 +176,3 @@ def _log_film_speed(y: Array) -> Array:
     z = np.cbrt(y)
     bridge = (1 + z**2 * (f1 + f2 * z)) / (1 + z**2 * (f1 + a + z * (f3 + z * (f4 + z * (f5 + z * K * f2)))))
     return np.asarray(5 / 3 * np.log(y / c) + np.log(bridge) / 6)
-
-
-def _inverse(log_speed: Array, F: Array, kappa: Array) -> Array:
-    """Return ln X at which :func:`_log_speed` is ``log_speed``."""
-    phi = phi_of(F, "closed")
-    low, high = np.full(F.shape, -300.0), np.full(F.shape, 700.0)
-    x = np.zeros(F.shape)
-    step = 1e-6
-    for _ in range(MAX_STEPS):
-        off = _log_speed(x, F, kappa, phi) - log_speed
-        low, high = np.where(off < 0, x, low), np.where(off < 0, high, x)
-        newton = x - off * step / (_log_speed(x + step, F, kappa, phi) - log_speed - off)
-        inside = (newton > low) & (newton < high)
-        moved = np.where(inside, newton, 0.5 * (low + high))
-        if np.all(np.abs(moved - x) <= 1e-12 * (1 + np.abs(x))):
-            break
-        x = moved
-    return x

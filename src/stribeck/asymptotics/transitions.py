@@ -1,7 +1,8 @@
-"""The transitions along a Stribeck curve: its minimum, where boundary lubrication ends, and where both lines meet.
+"""The transitions along a Stribeck curve: its minimum, where boundary lubrication ends, and whether friction falls at all.
 
-[BP] predict the minimum by theory.md Eq. (14), which is exact for vanishing roughness, and slow to become so; ours is the
-minimum of :func:`stribeck.asymptotics.mixed.friction`, found numerically.
+[BP] predict the minimum by theory.md Eq. (14), which is exact for vanishing roughness, and slow to become so: the friction has
+one on either side of k = 0.4968 or none, see :func:`weakening_number`.  Ours is the minimum of
+:func:`stribeck.asymptotics.mixed.friction`, found numerically.
 
 Source: [BP] Sections "Hydrodynamic-to-mixed lubrication transition", "Boundary-to-mixed lubrication transition", "Conclusion".
 """
@@ -9,42 +10,38 @@ Source: [BP] Sections "Hydrodynamic-to-mixed lubrication transition", "Boundary-
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
+from typing import Literal, get_args
 
 import numpy as np
 
-from stribeck._types import Array
+from stribeck._types import Array, Flags
 from stribeck.asymptotics import mixed
 from stribeck.asymptotics.constants import FILM_CONSTANT, PRINTED_FILM_CONSTANT
-from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.documentation import described
+from stribeck.asymptotics.formula import Limit, Value, coefficient, formula
 from stribeck.asymptotics.hydrodynamic import central_gap
 from stribeck.asymptotics.mixed import lambert_w
 from stribeck.asymptotics.perturbation import phi_of
-from stribeck.asymptotics.weakening import (
-    MAX_WEAKENING,
-    Criterion,
-    Form,
-    film_ratio_at_minimum,
-    has_minimum,
-    roughness_without_minimum,
-    weakening_number,
-)
 from stribeck.contacts.groups import Groups
-
-__all__ = [
-    "MAX_WEAKENING",
-    "Criterion",
-    "Form",
-    "friction_at_minimum",
-    "has_minimum",
-    "separation_at_minimum",
-    "roughness_without_minimum",
-    "speed_at_minimum",
-    "speed_boundary_to_mixed",
-    "weakening_number",
-]
+from stribeck.quantities.units import checked_word
 
 FIT_RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-5, 0.01), Limit("beta/mu0", 1e-3, 1.0))
+
+Form = Literal["uniform", "exact", "expansion", "leading"]
+Criterion = Literal["uniform", "plateau", "lines", "weakening"]
+
+MAX_WEAKENING = (3 * math.e) ** (-1 / 3)  # k up to which the branch of Lambert's W exists on which the minimum lies.
+FILM_RATIO_RANGE = (1.5, 60.0)  # Film ratios c lambda**(3/5)/kappa between which the minimum of the uniform law is sought.
+# Relative roughness between which the speed of the minimum stays in double precision.
+FINITE_SPEED_ROUGHNESS = 1e-170, 1e170
+
+SEARCH_POINTS = 121  # Film ratios at which the uniform law is scanned for its minimum.
+BISECTIONS = 30  # Halvings of the interval that holds a root.
+DIFFERENCE_STEP = 1e-4  # Step of the differences in ln(speed).
+
+ROUGHNESS_RANGE = (1e-7, 1e3)  # Relative roughness between which the merging of the uniform law is sought.
 
 
 _at_minimum = partial(formula, uses=("load", "roughness"), plane="mixed", limits=FIT_RANGE)
@@ -108,7 +105,7 @@ def speed_at_minimum(
     1e-4, up to 35 % above at 0.01; as printed from 14 % below to 12 % above, as its two errors cancel.
     """
     if form == "uniform" and not printed:
-        ratio = film_ratio_at_minimum(groups, boundary_friction, beta)
+        ratio = _film_ratio(groups, boundary_friction, beta)
     else:
         ratio = _ratio_of_paper(groups, boundary_friction, beta, form, printed)
     c = PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT
@@ -185,6 +182,151 @@ def speed_boundary_to_mixed(groups: Groups, *, printed: bool = False) -> Value:
         phi = np.where(np.less(groups.load, 1), phi_of(groups.load, "printed" if printed else "quadrature"), np.nan)
         found: Array = np.square(groups.relative_roughness) * phi**-0.5
         return found[()]
+
+
+@described("k [-].", source="[BP] Eq. (Lambda_solution)")
+def weakening_number(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, *, printed: bool = False) -> Value:
+    r"""Return the number on which the minimum of friction depends in the limit of small roughness.
+
+    .. math:: k = \frac{2}{9 c^{5/3}} \frac{\beta \bar h_\mathrm{rms}^{2/3} \bar F_N^{1/3}}{\mu_0}
+    """
+    boundary_friction, beta = coefficient("boundary_friction", boundary_friction), coefficient("beta", beta)
+    c = PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT
+    with np.errstate(divide="ignore"):
+        scale = np.divide(2 * beta, 9 * c ** (5 / 3) * boundary_friction)
+    number: Value = scale * np.power(groups.roughness, 2 / 3) * np.power(groups.load, 1 / 3)
+    return number
+
+
+@described(
+    "Of the shape of load and roughness.",
+    kind="ndarray of bool",
+    source="[BP] Eq. (Lambda_solution), whose condition is not stated there",
+    form='``"uniform"``: by :func:`stribeck.asymptotics.mixed.friction`; the others: by that of [BP], as above.',
+)
+def has_minimum(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, form: Form = "uniform") -> Flags:
+    r"""Return whether friction has a minimum over the speed.
+
+    .. math:: k < (3e)^{-1/3} = 0.4968
+
+    The condition on k is necessary and far from sufficient, see :func:`roughness_without_minimum`.
+    """
+    boundary_friction, beta = coefficient("boundary_friction", boundary_friction), coefficient("beta", beta)
+    if checked_word("form", form, get_args(Form)) == "uniform":
+        return np.isfinite(_film_ratio(groups, boundary_friction, beta))
+    return np.asarray(weakening_number(groups, boundary_friction, beta) < MAX_WEAKENING)
+
+
+@described(
+    "Roughness group [-]; nan where the criterion is never met.",
+    raises="If ``criterion`` is none of the four, or a load is no positive number.",
+    source="[BP] Conclusion, in words; formulas ours",
+    load="Load group [-].",
+)
+def roughness_without_minimum(
+    load: Value, boundary_friction: float = 1.0, beta: float = 1.0, criterion: Criterion = "uniform"
+) -> Value:
+    r"""Return the roughness beyond which friction never falls with speed, by formulas.
+
+    .. math::
+
+        \bar h_\mathrm{rms} = \left(\frac{9 c^{5/3} k \mu_0}{2 \beta \bar F_N^{1/3}}\right)^{3/2}, \quad
+        k = \Lambda^{1/3} e^{-\Lambda}, \quad
+        \Lambda_\mathrm{plateau} = -\tfrac23 - W_{-1}\!\left(-\tfrac\pi6 \bar F_N^{1/2} e^{-2/3}\right), \quad
+        \Lambda_\mathrm{weakening} = \tfrac13, \quad
+        \Lambda_\mathrm{lines} = 3 W_0\!\left(\tfrac13 \left[\frac{9 c^5 \mu_0}{2 \beta \bar F_N \phi}\right]^{1/3}\right)
+
+    criterion :
+        ``"uniform"``: :func:`stribeck.asymptotics.mixed.friction` no longer falls anywhere.
+        ``"plateau"``: the minimum of [BP]'s friction reaches boundary_friction, what its Conclusion names.
+        ``"lines"``: the two transitions of [BP],
+        ``speed_boundary_to_mixed`` and ``speed_at_minimum`` (exact), meet, what its Conclusion means by merging.
+        ``"weakening"``: the minimum of [BP]'s friction disappears, k = 0.4968.
+
+    Relative roughness of the merging with mu0 = beta = 1:
+
+    ===============================================  =====  =====  =====  =====
+    Load                                             0.001  0.01   0.1    0.5
+    ===============================================  =====  =====  =====  =====
+    solver, no minimum, balanced                     0.778  0.342  0.175  0.151
+    solver, no minimum, published                    0.784  0.343  0.160  0.103
+    solver, minimum at boundary_friction, balanced   0.586  0.267  0.146  0.133
+    solver, minimum at boundary_friction, published  0.577  0.254  0.122  0.084
+    uniform                                          0.813  0.297  0.115  0.040
+    plateau                                          12.2   2.69   0.645  0.266
+    lines                                            0.271  0.672  1.59   1.21
+    weakening                                        14029  444    14.0   1.25
+    ===============================================  =====  =====  =====  =====
+
+    The solver's are :func:`stribeck.regimes.weakening.roughness_without_minimum`.
+    The last three assume small relative roughness and are asked where it is not small.
+    """
+    checked_word("criterion", criterion, get_args(Criterion))
+    boundary_friction, beta = coefficient("boundary_friction", boundary_friction), coefficient("beta", beta)
+    F = np.asarray(Groups(0.0, load, 0.0).load)
+    if criterion == "uniform":
+        return _uniform_merging(F, boundary_friction, beta)
+    c = FILM_CONSTANT
+    with np.errstate(all="ignore"):
+        if criterion == "plateau":
+            argument = -math.pi / 6 * np.power(F, 0.5) * math.exp(-2 / 3)
+            ratio = -2 / 3 - lambert_w(argument, -1)
+        elif criterion == "lines":
+            phi = np.where(np.less(F, 1), phi_of(F), np.nan)
+            ratio = 3 * lambert_w(np.power(9 * c**5 * boundary_friction / (2 * beta * F * phi), 1 / 3) / 3)
+        else:
+            ratio = np.full(np.shape(F), 1 / 3)
+        # Below 1/3 lies the other branch, the maximum.
+        ratio = np.where(ratio >= 1 / 3, ratio, np.nan)
+        k = np.power(ratio, 1 / 3) * np.exp(-ratio)
+        found: Value = np.power(9 * c ** (5 / 3) * k * boundary_friction / (2 * beta * np.power(F, 1 / 3)), 1.5)[()]
+        return found
+
+
+def _speed(film_ratio: Value, kappa: Value) -> Value:
+    speed: Value = np.power(film_ratio * kappa / FILM_CONSTANT, 5 / 3)
+    return speed
+
+
+def _last(holds: Callable[[Array], Flags], low: Array, high: Array) -> Array:
+    """Return up to where something holds that does at ``low`` and does not at ``high``."""
+    for _ in range(BISECTIONS):
+        middle = (low + high) / 2
+        there = holds(middle)
+        low, high = np.where(there, middle, low), np.where(there, high, middle)
+    return low
+
+
+def _film_ratio(groups: Groups, boundary_friction: float, beta: float) -> Value:
+    """Return the film ratio at which the uniform law has its minimum, nan where it has none."""
+    load, given = np.broadcast_arrays(groups.load, groups.relative_roughness)
+    kappa = np.clip(given, *FINITE_SPEED_ROUGHNESS)
+
+    def falls(log_ratio: Array) -> Flags:
+        above, below = (
+            mixed.friction.function(Groups(_speed(np.exp(each), kappa), load, kappa * load), boundary_friction, beta)
+            for each in (log_ratio + DIFFERENCE_STEP, log_ratio - DIFFERENCE_STEP)
+        )
+        return np.less(above - below, 0)
+
+    ratios = np.linspace(*np.log(FILM_RATIO_RANGE), SEARCH_POINTS)
+    falling = falls(ratios.reshape(-1, *(1,) * load.ndim))
+    last = SEARCH_POINTS - 1 - np.argmax(falling[::-1], axis=0)
+    found = falling.any(axis=0) & (last < SEARCH_POINTS - 1) & (kappa == given)
+    low = np.minimum(last, SEARCH_POINTS - 2)
+    return np.where(found, np.exp(_last(falls, ratios[low], ratios[low + 1])), np.nan)[()]
+
+
+def _uniform_merging(load: Value, boundary_friction: float, beta: float) -> Value:
+    """Return the roughness from which the uniform law has no minimum, nan where that lies outside ROUGHNESS_RANGE."""
+    low, high = (np.full(np.shape(load), math.log(end)) for end in ROUGHNESS_RANGE)
+
+    def falls(log_kappa: Array) -> Flags:
+        groups = Groups(1.0, load, load * np.exp(log_kappa))
+        return np.isfinite(_film_ratio(groups, boundary_friction, beta))
+
+    inside = falls(low) & ~falls(high)
+    return np.where(inside, load * np.exp(_last(falls, low, high)), np.nan)[()]
 
 
 def _ratio_of_paper(groups: Groups, boundary_friction: float, beta: float, form: Form, printed: bool) -> Value:

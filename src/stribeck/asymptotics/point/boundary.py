@@ -1,14 +1,23 @@
 r"""Boundary lubrication of a ball: the load share of a slow fluid in a contact of small relative roughness.
 
-As on the line, but the pressure :math:`P_1 \cos\theta` and the gap :math:`H_1 \cos\theta`, :math:`H_1 = P_1/(1-r^2)^{1/2}`,
-that it opens go with the angle: the flow over that gap carries load.
+With gaps in :math:`\kappa u_\mathrm{Hz}`, :math:`H_0 = A - \tfrac12 \ln(1 - r^2)`, :math:`A = -\tfrac13 \ln F`, the pressure
+:math:`p_f = (\lambda/\kappa^2) P_1(r) \cos\theta` obeys
+
+.. math:: \frac1r (r H_0^3 P_1')' - \frac{H_0^3}{r^2} P_1 = H_0', \qquad P_1(0) = P_1(1) = 0 ,
+
+and the gap :math:`H_1 \cos\theta`, :math:`H_1 = P_1/(1-r^2)^{1/2}`, that it opens goes with the angle too: the flow over that
+gap carries load.  All of it depends on the load alone.  The coordinate is that of the line
+(:mod:`stribeck.asymptotics.perturbation`), :math:`r = \tanh(\delta \sinh v)` with :math:`\cos\delta = e^{-A}`; spectral
+elements in v; beyond, where :math:`1 - r^2 < 10^{-16}`, nothing is left.
 
 Source: ours, as [BP] Appendix C and D for the line; theory.md, section 11.
 """
 
 from __future__ import annotations
 
-from functools import partial
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache, partial
 from typing import Literal, get_args
 
 import numpy as np
@@ -16,12 +25,11 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Limit, Value, checked_load, fluid_number, formula
-from stribeck.asymptotics.point.logarithm import far_integral
+from stribeck.asymptotics.point.logarithm import friction_of
 from stribeck.asymptotics.point.rest import CATALAN
-from stribeck.asymptotics.point.slow_contact import of_gap
-from stribeck.contacts.cut_off import POISEUILLE
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
+from stribeck.numerics.fourier_panels import lobatto
 from stribeck.quantities.units import checked_word
 
 PhiForm = Literal["quadrature", "closed"]
@@ -40,6 +48,80 @@ MOMENT_EDGE_COEFFICIENTS = (-0.845, 7.554, 0.835)
 
 SLOW_RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 0.03), Limit("slow_share", 0, 1e-3))
 
+ELEMENT_DEGREE = 16  # Degree of the elements: the integrals err by 1e-12 for loads up to 1 - 1e-3.
+ELEMENTS = 12  # Number of the elements.
+DOMAIN_LENGTH = 19.0  # Length of the integrals in artanh(r): 1e-16 of the whole is left out.
+MAX_GAP = 1e50  # A up to which powers of the gap stay in double precision; above it the integrals are zero.
+
+
+@dataclass(frozen=True)
+class Slow:
+    """The contact from its middle to its edge at the nodes of the elements, shape (elements, nodes).
+
+    ``r``, ``H``, ``p_0``: distance, gap at rest, pressure at rest; ``P``, ``slope``: P_1 and its derivative; ``weights``:
+    those of dr.
+    """
+
+    r: Array
+    H: Array
+    p_0: Array
+    P: Array
+    slope: Array
+    weights: Array
+
+    def integral(self, integrand: Array) -> float:
+        """Return the integral over r from the middle to the edge."""
+        return float((self.weights * integrand).sum())
+
+    def share(self) -> float:
+        """Return the fluid's share of the load over lambda**2/kappa**4, phi."""
+        return -0.75 * self.integral(self.r**2 * self.P / self.p_0 * (1 - 3 * self.H**2 * self.slope) / self.H**3)
+
+    def shear(self) -> float:
+        r"""Return the balanced shear over lambda/kappa, :math:`\pi \int [r/(3 H_0) + \tfrac12 H_0 (r P_1)'] dr`."""
+        return np.pi * self.integral(self.r / (3 * self.H) + 0.5 * self.H * (self.r * self.slope + self.P))
+
+    def moment(self) -> float:
+        r"""Return the moment of the fluid's pressure over lambda/kappa**2, :math:`\pi \int r^2 P_1 dr`."""
+        return np.pi * self.integral(self.r**2 * self.P)
+
+
+@lru_cache(maxsize=512)
+def slow_contact(A: float) -> Slow:
+    """Return the contact at -1/3 ln F = A > 0."""
+    rule = lobatto(ELEMENT_DEGREE)
+    delta = np.arcsin(np.sqrt(-np.expm1(-2 * A)))
+    edges = np.linspace(0.0, np.arcsinh(DOMAIN_LENGTH / delta), ELEMENTS + 1)
+    half = 0.5 * (edges[1] - edges[0])
+    v = edges[:-1, None] + half * (rule.nodes + 1)
+    u = delta * np.sinh(v)
+    r, p_0 = np.tanh(u), 1 / np.cosh(u)
+    H = A + np.log1p(2 * np.sinh(u / 2) ** 2)
+    stretch = half * delta * np.cosh(v) * p_0**2
+    weights = rule.weights * stretch
+    d_dr = rule.derivative / stretch[..., None]
+    n = ELEMENTS * ELEMENT_DEGREE + 1
+    matrix, right = np.zeros((n, n)), np.zeros(n)
+    for k in range(ELEMENTS):
+        place = slice(k * ELEMENT_DEGREE, (k + 1) * ELEMENT_DEGREE + 1)
+        matrix[place, place] -= d_dr[k].T @ ((weights[k] * r[k] * H[k] ** 3)[:, None] * d_dr[k])
+        # The node in the middle has P = 0.
+        matrix[place, place] -= np.diag(weights[k] * H[k] ** 3 / np.where(r[k] > 0, r[k], 1.0))
+        right[place] += weights[k] * r[k] ** 2 / p_0[k] ** 2
+    P = np.zeros(n)
+    P[1:-1] = np.linalg.solve(matrix[1:-1, 1:-1], right[1:-1])
+    local = np.stack([P[k * ELEMENT_DEGREE : (k + 1) * ELEMENT_DEGREE + 1] for k in range(ELEMENTS)])
+    slope = np.einsum("kij,kj->ki", d_dr, local)
+    return Slow(r, H, p_0, local, slope, weights)
+
+
+def of_gap(A: Value, number: Callable[[Slow], float]) -> Array:
+    """Return a number for each A from its contact, equal ones once; nan where A is no finite positive number."""
+    gaps = np.asarray(A, dtype=float)
+    different, where = np.unique(gaps, return_inverse=True)
+    found = [number(slow_contact(each)) if 0 < each < MAX_GAP else np.nan for each in different.tolist()]
+    return np.asarray(np.array(found)[where.reshape(gaps.shape)])
+
 
 def gap_at_rest(load: Value, kappa: Value = 0.0) -> Array:
     """Return A, the gap in the middle of the contact at rest over kappa; nan from load 1 on."""
@@ -50,7 +132,7 @@ def gap_at_rest(load: Value, kappa: Value = 0.0) -> Array:
 def phi_of(A: Array, form: PhiForm = "quadrature") -> Array:
     """Return :func:`phi` of a contact by its gap at rest."""
     if form == "quadrature":
-        return of_gap(A, lambda contact: contact.share)
+        return of_gap(A, Slow.share)
     b1, b2, a1, a2 = CLOSED_FORM_COEFFICIENTS
     a3 = b2 * (HEAVY_LIMIT / LIGHT_LIMIT) ** (1 / 3)
     # In 1/A, which does not overflow for very rough contacts.
@@ -81,9 +163,8 @@ def phi(load: Value, form: PhiForm = "quadrature") -> Value:
     return phi_of(gap_at_rest(checked_load(load, "point")), form)[()]
 
 
-def edge_factor(load: Value, kappa: Value, coefficients: tuple[float, float, float]) -> Array:
-    """Return the factor of the edges on an integral over the contact."""
-    A = gap_at_rest(load)
+def edge_factor(A: Array, kappa: Value, coefficients: tuple[float, float, float]) -> Array:
+    """Return the factor of the edges on an integral over the contact, by its gap at rest without roughness."""
     return np.asarray(1 + np.polynomial.polynomial.polyval(A, coefficients) * np.power(kappa, 2 / 3))
 
 
@@ -109,7 +190,9 @@ def fluid_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = "q
     if not with_edges:
         return np.square(number) * phi_of(gap_at_rest(groups.load), form)
     F, kappa = groups.load, groups.relative_roughness
-    return np.square(number) * phi_of(gap_at_rest(F, kappa), form) * edge_factor(F, kappa, SHARE_EDGE_COEFFICIENTS)
+    return (
+        np.square(number) * phi_of(gap_at_rest(F, kappa), form) * edge_factor(gap_at_rest(F), kappa, SHARE_EDGE_COEFFICIENTS)
+    )
 
 
 @_slow(undefined="from load 1 on", worst=2e-4, source="ours")
@@ -137,22 +220,12 @@ def viscous_friction(
 
     The integrals are over the contact at the load of :func:`fluid_load_share`; s and m are fitted.
     """
-    lambda_, F, kappa = groups.speed, groups.load, np.asarray(groups.relative_roughness)
-    if beta == 0:
-        return np.zeros(groups.shape)[()]
-    A = gap_at_rest(F, kappa)
-    J = lambda_ / kappa * edge_factor(F, kappa, SHEAR_EDGE_COEFFICIENTS) * of_gap(A, lambda contact: contact.shear)
-    J = J + lambda_ * far_integral(groups.slope(beta), wetted_radius)
+    A_0, kappa = gap_at_rest(groups.load), np.asarray(groups.relative_roughness)
+    A = gap_at_rest(groups.load, kappa)
+    J = groups.speed / kappa * edge_factor(A_0, kappa, SHEAR_EDGE_COEFFICIENTS) * of_gap(A, Slow.shear)
     if definition == "published":
-        # A disc of liquid ends with a pressure at its rim.
-        J = (
-            J
-            + (0.0 if wetted_radius is None else POISEUILLE) * lambda_
-            - fluid_number(groups)
-            * edge_factor(F, kappa, MOMENT_EDGE_COEFFICIENTS)
-            * of_gap(A, lambda contact: contact.moment)
-        )
-    return (0.75 * beta * np.power(F, 1 / 3) * J)[()]
+        J = J - fluid_number(groups) * edge_factor(A_0, kappa, MOMENT_EDGE_COEFFICIENTS) * of_gap(A, Slow.moment)
+    return friction_of(groups, J, beta, definition, wetted_radius)[()]
 
 
 @_slow(limits=(*SLOW_RANGE, Limit("beta/mu0", 0.0, 1.0)), undefined="from load 1 on", worst=1e-3, source="ours")

@@ -17,12 +17,11 @@ from stribeck._types import Array
 from stribeck.asymptotics.constants import BALL_FILM_CONSTANT
 from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.point.boundary import edge_factor, gap_at_rest
 from stribeck.asymptotics.point.film import film_of
-from stribeck.asymptotics.point.logarithm import LOGARITHM_COEFFICIENT, far_integral
-from stribeck.asymptotics.point.rest import CATALAN
+from stribeck.asymptotics.point.logarithm import LOGARITHM_COEFFICIENT, friction_of
 from stribeck.asymptotics.point.rigid import GAP_COEFFICIENT
 from stribeck.asymptotics.point.sharing import FIT_RANGE, film_speed_ratio, log_odds, speed_of_share
-from stribeck.contacts.cut_off import POISEUILLE
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
 
@@ -30,7 +29,7 @@ from stribeck.contacts.groups import Groups
 SLOW_INTEGRAL = math.sqrt(math.pi) * math.gamma(1.2) / math.gamma(1.7) / (3 * BALL_FILM_CONSTANT)
 
 # Fitted coefficients of :func:`smooth_integral` and :func:`viscous_friction`; the moment of first order in the speed is within
-# 0.3 % of its quadrature (:mod:`stribeck.asymptotics.point.slow_contact`) for A from 0.08 to 20.
+# 0.3 % of its quadrature (:mod:`stribeck.asymptotics.point.boundary`) for A from 0.08 to 20.
 SMOOTH_COEFFICIENTS = (1.14012, 4.59157, 1.21222, -0.65781, 0.84862, 1.04412, -0.027006)
 ROUGH_COEFFICIENTS = (0.55662, 0.017976, 0.30227, 0.013413, 0.0021505)
 FIRST_MOMENT_COEFFICIENTS = (0.158797, 0.621804, 3.214195, 1.305809, 0.380217)
@@ -85,7 +84,8 @@ def viscous_friction_smooth(
     :func:`smooth_integral` has both limits and seven fitted coefficients.  The error is below 0.1 % at any speed
     while the contact is narrow, :math:`a < R/5`; the stated one is that of load 0.1 at :math:`\beta = 1`.
     """
-    return _coefficient(groups, smooth_integral(groups.speed), beta, definition, wetted_radius)[()]
+    J = smooth_integral(groups.speed)
+    return friction_of(groups, J, beta, definition, wetted_radius, film_of(groups.speed))[()]
 
 
 _rough = partial(formula, plane="mixed", geometry="point")
@@ -156,16 +156,16 @@ def _viscous(groups: Groups, odds: Array, beta: float, definition: Definition, w
     J[rough] = smooth_integral(speed) * np.exp(-y * (power + bend * np.sqrt(kappa) * y)) * factor * lambda_ / speed
     if definition == "published":
         J[rough] += lambda_ / kappa**2 * _moment(F, kappa, odds)
-    return _coefficient(groups, J, beta, definition, wetted_radius)
+    return friction_of(groups, J, beta, definition, wetted_radius, film_of(groups.speed))
 
 
 def _moment(F: Array, kappa: Array, odds: Array) -> Array:
     """Return the moment of the contact pressure over lambda/kappa**2."""
     b1, b2, b3, b4, b5, b6, b7 = MOMENT_COEFFICIENTS
-    A, more = -np.log(F) / 3, np.logaddexp(0.0, odds)
-    G = A + (0.5 + CATALAN) * kappa + more
+    more = np.logaddexp(0.0, odds)
+    G = gap_at_rest(F, kappa) + more
     q = b7 + (b1 + b2 / G) / ((1 + b3 * kappa**b4 * G**b6) * (1 + b5 * more))
-    edges = 1 + np.polynomial.polynomial.polyval(A, MOMENT_EDGE_COEFFICIENTS) * kappa ** (2 / 3)
+    edges = edge_factor(gap_at_rest(F), kappa, MOMENT_EDGE_COEFFICIENTS)
     return np.asarray(first_moment(G) * np.exp(-more * q) * edges)
 
 
@@ -174,14 +174,3 @@ def first_moment(A: Value) -> Array:
     c1, c2, c3, c4, c5 = FIRST_MOMENT_COEFFICIENTS
     G = np.asarray(A)
     return np.asarray(c1 * G**-c2 * (1 + c3 * G) ** -c4 * (1 + c5 * G) ** (c2 + c4 - 3))
-
-
-def _coefficient(groups: Groups, J: Value, beta: float, definition: Definition, wetted_radius: float | None) -> Array:
-    """Return the friction coefficient of the finite part of a friction integral."""
-    if beta == 0:
-        return np.zeros(np.shape(J))
-    film = film_of(groups.speed)
-    J = J + np.multiply(groups.speed, far_integral(groups.slope(beta), wetted_radius, film))
-    if definition == "published" and wetted_radius is not None:
-        J = J + POISEUILLE * np.asarray(groups.speed) / (1.0 + 2.0 * film / np.square(wetted_radius))
-    return np.asarray(0.75 * beta * np.power(groups.load, 1 / 3) * J)

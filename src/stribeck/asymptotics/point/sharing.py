@@ -16,10 +16,9 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.load_sharing import odds_of
-from stribeck.asymptotics.point.boundary import SHARE_EDGE_COEFFICIENTS, phi_of
+from stribeck.asymptotics.load_sharing import MAX_STEPS, odds_at, odds_of
+from stribeck.asymptotics.point.boundary import SHARE_EDGE_COEFFICIENTS, edge_factor, gap_at_rest, phi_of
 from stribeck.asymptotics.point.film import film_of
-from stribeck.asymptotics.point.rest import CATALAN
 from stribeck.contacts.groups import Groups
 
 # Range of the states to which the coefficients are fitted.
@@ -35,8 +34,6 @@ GAUSS_NODES = 48  # Gauss nodes across the film.
 LOG_SPEED_TABLE = (math.log(1e-18), math.log(1e9), 6000)
 
 MAX_ROUGHNESS = 100.0  # Relative roughness above which the film across cannot be integrated, and there is no value.
-
-MAX_STEPS = 70  # Steps of the inversions; 10 are usual.
 
 
 @formula(
@@ -72,18 +69,7 @@ def speed_of_share(groups: Groups, share: Value = 0.5) -> Value:
 
 def log_odds(groups: Groups) -> Array:
     """Return ln X, fluid over contact share: -inf at rest, inf without roughness, nan where the law has no value."""
-    lambda_, F, kappa = np.broadcast_arrays(groups.speed, groups.load, groups.relative_roughness)
-    has_value = (F < 1) & ((lambda_ == 0) | (kappa <= MAX_ROUGHNESS))
-    found = np.where(has_value, np.where(lambda_ > 0, math.inf, -math.inf), math.nan)
-    inside = has_value & (lambda_ > 0) & (kappa > 0)
-    wanted, F, kappa = np.log(lambda_[inside]), F[inside], kappa[inside]
-    low, high = np.full(F.shape, -120.0), np.full(F.shape, 120.0)
-    for _ in range(MAX_STEPS):
-        middle = 0.5 * (low + high)
-        slower = _log_speed(middle, F, kappa)[0] < wanted
-        low, high = np.where(slower, middle, low), np.where(slower, high, middle)
-    found[inside] = 0.5 * (low + high)
-    return found
+    return odds_at(groups, lambda *state: _log_speed(*state)[0], MAX_ROUGHNESS)
 
 
 def film_speed_ratio(groups: Groups, odds: Array) -> Array:
@@ -99,11 +85,10 @@ def _log_speed(odds: Array, F: Array, kappa: Array) -> tuple[Array, Array]:
     f0, f1, f2, f3 = FILM_COEFFICIENTS
     s1, s2 = SUM_COEFFICIENTS
     more, fluid = np.logaddexp(0.0, odds), 1 / (1 + np.exp(-odds))  # ln(1 + X), 1 - S
-    A_0 = -np.log(F) / 3
-    A = A_0 + (0.5 + CATALAN) * kappa
+    A_0, A = gap_at_rest(F), gap_at_rest(F, kappa)
     G = A + more
     H = G + math.log(1.5)
-    edges = 1 + np.polynomial.polynomial.polyval(A_0, SHARE_EDGE_COEFFICIENTS) * kappa ** (2 / 3)
+    edges = edge_factor(A_0, kappa, SHARE_EDGE_COEFFICIENTS)
     at_rest = -0.5 * np.log(phi_of(A, "closed") * np.maximum(edges, 0.02)) - math.log(w1) - w2 * np.log(A)
     wedge = 2 * np.log(kappa) + 0.5 * (odds + more) + math.log(w1) + w2 * np.log(G)
     wedge = wedge + at_rest * np.exp(-(w3 + w4 * A_0 + w5 * np.sqrt(kappa)) * more)
