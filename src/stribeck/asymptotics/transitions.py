@@ -309,7 +309,7 @@ def _film_ratio(groups: Groups, boundary_friction: float, beta: float) -> Value:
         )
         return np.less(above - below, 0)
 
-    ratios = np.linspace(*np.log(FILM_RATIO_RANGE), SEARCH_POINTS)
+    ratios = np.log(np.geomspace(*FILM_RATIO_RANGE, SEARCH_POINTS))
     falling = falls(ratios.reshape(-1, *(1,) * load.ndim))
     last = SEARCH_POINTS - 1 - np.argmax(falling[::-1], axis=0)
     found = falling.any(axis=0) & (last < SEARCH_POINTS - 1) & (kappa == given)
