@@ -33,7 +33,6 @@ KAPPA = 0.01
 
 LOADS = (0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 2.0, 3.0, 5.0, 10.0)
 SHOWN = (0.1, 1.0, 3.0, 10.0)
-TOLD = (0.1, 0.3, 1.0, 3.0, 10.0)
 SPEEDS = (1e-11, 1.0)
 POINTS = 111
 
@@ -89,17 +88,6 @@ def number(value: float, digits: int = 3) -> str:
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return a table in Markdown."""
     return "\n".join(f"| {' | '.join(cells)} |" for cells in [head, ["---"] * len(head), *rows])
-
-
-def comparison(pairs: dict[float, tuple[Pair, Pair]]) -> str:
-    """Return the plateau of both laws and the speed at which it ends."""
-    rows = []
-    for load in TOLD:
-        cells = [number(load)]
-        for pair in pairs[load]:
-            cells += [number(float(pair.curve.friction[0])), number(pair.speed("fluid carries 5 % of the load"))]
-        rows.append(cells)
-    return table(["$F$", "exponential: $\\mu/\\mu_0$", "its end", "Persson: $\\mu/\\mu_0$", "its end"], rows)
 
 
 def simulated(alpha: float, beta: float) -> sb.contact_laws.TableLaw:
@@ -216,7 +204,6 @@ def main(arguments: Sequence[str] = ()) -> None:
             pairs[load] = solved(load, None, law.beta), solved(load, law, law.beta)
             print(f"load {load:g} done", flush=True)
         draw(pairs)
-        blocks |= {"comparison": comparison(pairs)}
     PAGE.write_text(filled(PAGE.read_text(), blocks))
 
 

@@ -4,7 +4,7 @@ Usage::
 
     python docs/validity.py [BLOCK ...]
 
-Takes about three minutes on one core; with the names of blocks (``shares``, ``ratios`` or keys of ``SECTIONS``) only these are
+Takes about three minutes on one core; with the names of blocks (``ratios`` or keys of ``SECTIONS``) only these are
 made.  What stands in the page between marks is replaced, all other text is kept.
 """
 
@@ -23,9 +23,9 @@ import numpy as np
 from PIL import Image
 
 from evidence.coefficients import COEFFICIENT_RATIOS, JUDGED_FORMULAS, largest_errors
-from evidence.error_maps import error_map, error_maps, kind_of
+from evidence.error_maps import error_maps, kind_of
 from evidence.plot import plot_error_maps
-from stribeck.asymptotics import FORMULAS, Formula, Limit, load_sharing, transitions
+from stribeck.asymptotics import FORMULAS, Formula, Limit
 from stribeck.asymptotics.formula import COEFFICIENT_RATIO
 from stribeck.numerics.threads import one_blas_thread
 
@@ -71,10 +71,6 @@ SYMBOLS = {
     COEFFICIENT_RATIO: "β/μ<sub>0</sub>",
 }
 """Parameters of ranges by their symbols; others have their names."""
-
-SHARE_LOADS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 0.7)
-SHARE_KAPPAS = np.logspace(-4, -1, 7)
-"""Grid of the speeds at which the fluid carries a share."""
 
 RATIO_POINTS = (22, 19)
 """Loads and relative roughnesses at which the errors over beta/mu0 are measured."""
@@ -142,29 +138,6 @@ def error_table(section: str) -> str:
     return table(["Holds for", "Formulas, error [%]"], [[words, ", ".join(found)] for words, found in rows.items()])
 
 
-def share_maps() -> list[tuple[Formula[Any], xarray.Dataset]]:
-    """Return our law of load sharing and the criterion of [BP], judged by the speeds at which the fluid carries 50 and 5 %."""
-    grid: dict[str, Any] = {"load": SHARE_LOADS, "relative_roughness": SHARE_KAPPAS}
-    ours, theirs = load_sharing.speed_at_fluid_share, transitions.speed_boundary_to_mixed
-    return [
-        (ours, error_map(ours, **grid, share=0.5)),
-        (ours, error_map(ours, **grid, share=0.05, predicts="speed_at_5_percent_fluid")),
-        (theirs, error_map(theirs, **grid)),
-        (theirs, error_map(theirs, **grid, predicts="speed_at_5_percent_fluid")),
-    ]
-
-
-def share_table(maps: list[tuple[Formula[Any], xarray.Dataset]]) -> str:
-    """Return the errors over the whole grid of those maps, with their signs."""
-    rows = []
-    for _, data in maps:
-        error = data["error"].values
-        ends = [f"{percent(float(end))}" for end in (np.nanmin(error), np.nanmax(error))]
-        fluid = "5" if "5" in data.attrs["predicts"] else "50"
-        rows.append([f"`{data.attrs['title']}`", fluid, percent(float(np.nanmedian(np.abs(error)))), *ends])
-    return table(["Formula", "fluid carries", "median size", "smallest", "largest"], rows)
-
-
 def ratio_table() -> str:
     """Return the largest errors of the laws of friction and of its minimum for several beta/mu0; in range bold."""
     rows = []
@@ -198,7 +171,7 @@ def filled(text: str, blocks: dict[str, str]) -> str:
 def main(wanted: Sequence[str] = ()) -> None:
     """Solve, draw, and write the page, or those of its blocks that are named."""
     start = time.perf_counter()
-    known = ("shares", "ratios", *SECTIONS)
+    known = ("ratios", *SECTIONS)
     if unknown := set(wanted) - set(known):
         sys.exit(f"no block is called {', '.join(sorted(unknown))}; there are {', '.join(known)}")
     made = wanted or known
@@ -223,12 +196,6 @@ def main(wanted: Sequence[str] = ()) -> None:
     worst = json.loads(WORST.read_text()) | {name: [each["largest"], each["at"]] for name, each in found.items() if each}
     lines = [f"  {json.dumps(name)}: {json.dumps(worst[name])}" for name in sorted(worst)]
     WORST.write_text("{\n" + ",\n".join(lines) + "\n}\n")
-    if "shares" in made:
-        say("speeds at which the fluid carries a share")
-        shares = share_maps()
-        title = "Speed at which the fluid carries 50 % or 5 % of the load"
-        plot_error_maps(shares, IMAGES / "validity_shares.png", force=True, title=title)
-        blocks["shares"] = share_table(shares)
     if "ratios" in made:
         say("friction over the ratio of its coefficients")
         blocks["ratios"] = ratio_table()

@@ -155,7 +155,7 @@ def test_a_picture_has_a_panel_for_each_load_of_a_map_and_one_for_each_line(maps
 def test_every_table_states_range_and_error_of_its_formulas_and_every_module_has_a_picture(script, blocks):
     shown = [module for section in script.SECTIONS.values() for module in section]
     assert sorted(shown) == sorted({formula.module for formula in FORMULAS})
-    assert set(blocks) == {"shares", "ratios", *script.SECTIONS}
+    assert set(blocks) == {"ratios", *script.SECTIONS}
     for section, modules in script.SECTIONS.items():
         formulas = script.of_modules(*modules)
         shown = {}
