@@ -85,7 +85,7 @@ def test_an_end_of_an_interval_is_where_the_best_fit_of_the_other_inputs_is_wors
         return float(np.sum(np.log(fitted.data.friction / found.friction) ** 2)) / fitted.noise**2
 
     names = [each.name for each in fitted.inputs]
-    for name, level, which in (("boundary_friction", 0.682689492137086, 0), ("roughness", 0.95, 1), ("modulus", 0.95, 0)):
+    for name, level, which in (("boundary_friction", 0.682689492137086, 0), ("roughness", 0.95, 1)):
         quantile = t.ppf(0.5 + level / 2, len(fitted.data) - 3)
         end = (fitted[name].interval_95 if level == 0.95 else fitted[name].interval_68)[which]
         others = [each for each in names if each != name]

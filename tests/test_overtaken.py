@@ -15,7 +15,7 @@ DRY, BETA = 0.5, 0.05
 
 def curve(groups, ratio, rtol, **others):
     settings = {"boundary_friction": DRY, "beta": BETA, "rtol": rtol, **others}
-    return sb.stribeck_curve(groups, speed=(1e-4, 3.0), points=21, slide_to_roll=ratio, **settings)
+    return sb.stribeck_curve(groups, speed=(1e-4, 3.0), points=11, slide_to_roll=ratio, **settings)
 
 
 def sizes(found, wall):

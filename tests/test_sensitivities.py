@@ -122,16 +122,17 @@ def test_sensitivities_of_both_frictions_are_differences_of_solved_states(subtes
         with subtests.test(parts=parts):
             contact = contact_in_hertz_units(sb.Groups(1e-2, 0.1, 1e-3), **parts)
             of_part = "speed" if "cavity" in parts else "pressure_coefficient"
-            for definition, name in (("published", "load"), ("balanced", "load"), ("balanced", of_part)):
+            for definition, names in (("published", ("load",)), ("balanced", ("load", of_part))):
                 _, found = friction_sensitivities(contact, rtol=1e-8, definition=definition)
-                expected = differences(contact, name, definition, rtol=1e-9)
-                assert found[name] == pytest.approx(expected, abs=1e-5), (definition, name)
+                for name in names:
+                    expected = differences(contact, name, definition, rtol=1e-9)
+                    assert found[name] == pytest.approx(expected, abs=1e-5), (definition, name)
 
 
 def test_the_printed_friction_of_a_thin_film_has_the_slopes_of_solved_states():
     # Asperities carry all; the closed form of the printed friction was wrong by 3e-4 here.
     contact = contact_in_hertz_units(sb.Groups(5.39e-11, 9.87, 0.0369))
-    _, found = friction_sensitivities(contact, rtol=1e-8, definition="published")
+    _, found = friction_sensitivities(contact, rtol=1e-7, definition="published")
     assert found["load"] == pytest.approx(differences(contact, "load", "published", step=1e-2), abs=5e-5)
 
 

@@ -117,7 +117,6 @@ def test_the_stated_error_covers_that_of_four_times_the_steps(inlet):
     "change",
     [
         {},
-        {"cavitation": "exit"},
         {"cavitation": "exit", "fluid": THINS_AND_STIFFENS},
         pytest.param({"fluid": sb.fluids.Eyring("1 kPa"), "cavitation": "none"}, marks=pytest.mark.slow),
         pytest.param({"flow_factors": sb.fluids.PatirCheng(), "cavitation": "exit"}, marks=pytest.mark.slow),
@@ -165,8 +164,9 @@ def test_a_speed_that_rises_and_falls_has_the_friction_of_an_independent_scheme(
     assert np.allclose(np.interp([5, 10, 15, 20], found.time / unit, found.friction), wanted, rtol=0.01)
 
 
-def test_a_film_that_ends_turns_with_the_motion():
-    """The way back is the mirror image of the way out, also where the film ends and thins."""
+@pytest.mark.slow
+def test_a_film_that_thins_and_ends_turns_with_the_motion():
+    """The way back is the mirror image of the way out; that of a Newtonian film is so below."""
     contact = CONTACT.replace(cavitation="exit", fluid=sb.fluids.Carreau("1 ms", 0.8))
     found = sb.stroke(contact, sine(8), steps=32, cycles=2)
     for name in ("contact_load_share", "friction_fluid", "minimum_gap"):
@@ -195,13 +195,12 @@ def test_a_contact_that_runs_into_a_thin_wake_draws_in_no_more_than_that():
     """On the fast way back the film is about that of the slow way out, a third of that of a flooded inlet."""
     contact, motion = CONTACT.replace(cavitation="exit"), out_and_back(0.1 * SPEED, SPEED)
     own, few = (sb.stroke(contact, motion, steps=steps, inlet="own-wake") for steps in (200, 40))
-    flooded = sb.stroke(contact, motion, steps=40)
-    slow = sb.solve(contact.replace(speed=0.1 * SPEED))
+    slow, flooded = (sb.solve(contact.replace(speed=part * SPEED)) for part in (0.1, 1.0))
     film = slow.flux_gap * contact.hertz.indentation
     passed = 2 * np.abs(own.right_flow[-1]) / SPEED
     assert passed == pytest.approx(film, rel=1e-3)
-    assert 0.99 < own.central_gap[-1] / own.central_gap[0] < 1.01 < 2.5 < flooded.central_gap[-1] / flooded.central_gap[0]
-    assert own.friction[-1] < 10 * flooded.friction[-1] < 0
+    assert 0.99 < own.central_gap[-1] / own.central_gap[0] < 1.01 < 2.5 < flooded.central_gap / slow.central_gap
+    assert own.friction[-1] < -10 * flooded.friction.total < 0
     # The difference is within the error of the fewest steps that a motion may have.
     assert abs(few.central_gap[-1] - own.central_gap[-1]) < few.errors["central_gap"][-1]
 
@@ -215,6 +214,9 @@ def test_no_liquid_comes_out_of_a_wake_that_has_not_gone_into_it():
             gone = np.concatenate([[0.0], np.cumsum(0.5 * (flow[1:] + flow[:-1]) * np.diff(found.time))])
             drawn, left = gone[turn] - gone[turn : turn + 25], gone[turn] - gone[turn - 24 : turn + 1][::-1]
             assert bool((drawn < left + 0.01 * np.ptp(gone)).all()) is holds
+    for name in ("friction_fluid", "minimum_gap"):  # a film that ends turns with the motion
+        out, back = np.abs(getattr(flooded, name)[24:49]), np.abs(getattr(flooded, name)[48:73])
+        assert np.allclose(out, back, atol=0.01 * back.max()), name
     last = own.last_cycle
     assert np.abs(own.friction[last]).max() > 1.2 * np.abs(flooded.friction[last]).max()
     assert own.work > 1.2 * flooded.work
