@@ -1,22 +1,22 @@
-"""Columns of a table by what they are called, in SI units."""
+"""Columns of a table by what they are called, in SI units, and what lines above it say of all rows."""
 
 from __future__ import annotations
 
 import functools
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from stribeck._types import Array, Indices
-from stribeck.files.cells import is_named, split_header
+from stribeck.files.cells import is_named, number_of, split_header
 from stribeck.files.text_table import TextTable, read_table
 from stribeck.files.writing import PathLike, path_of
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["BARE", "Column", "has_dimension", "read_columns", "si_factor"]
+__all__ = ["BARE", "Column", "has_dimension", "read_columns", "si_factor", "stated_in"]
 
 BARE = {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01, "percent": 0.01, "‰": 0.001}  # Units of a bare number
 
@@ -25,6 +25,11 @@ STANDARD_GRAVITY = 9.80665  # [m/s^2]
 _MASS = re.compile(r"(?:[mk]?g|gram|gr)f?")
 _TURNS = re.compile(r"(?:r\.?p\.?m\.?|rev(?:olutions)?/min|U/min|1/min|/min|min\^?[-−]1|min⁻¹)", re.IGNORECASE)
 _TURNS_PER_SECOND = re.compile(r"(?:rps|rev/s|U/s|1/s|Hz|s\^?[-−]1|s⁻¹)")
+
+_STATED = re.compile(
+    r"\W*(?P<name>[^:;,=\t\[(]*?)\s*(?:[\[(](?P<before>[^\])]*)[\])])?\s*[:;,=\t]\s*"
+    r"(?P<value>[-+]?[0-9]+(?:[.,][0-9]+)?(?:[eE][-+]?[0-9]+)?)\s*[;,\t]?\s*[\[(]?(?P<after>(?:[A-Za-zµμ°][^;,:=\t\])]*)?)[\])]?[\s;,]*"
+)
 
 
 @functools.cache
@@ -105,3 +110,21 @@ def read_columns(
         found[name] = table.numbers_of(headers[0], functools.partial(column.factor, name), gaps=gaps)
     whole = ~np.isnan(list(found.values())).any(axis=0)
     return {name: values[whole] for name, values in found.items()}, np.array(table.numbers)[whole]
+
+
+def stated_in(table: TextTable) -> Iterator[tuple[int, str, str, str]]:
+    """Yield row, name, number and unit of each quantity that lines above the header give."""
+    texts = [text for _, text in table.above]
+    for (number, text), below in zip(table.above, [*texts[1:], ""], strict=False):
+        # One quantity in a line, several in it, or names whose values stand below.
+        pieces = [text, *re.split(r"[;,|]\s+|\t|(?<=[\])]),", text)]
+        found = [each for each in (_STATED.fullmatch(piece.strip()) for piece in pieces) if each]
+        yield from ((number, each["name"], each["value"], (each["before"] or each["after"] or "").strip()) for each in found)
+        mark = next((mark for mark in "\t;," if mark in text), "")
+        if found or not mark:
+            continue
+        for header, cell in zip(text.split(mark), below.split(mark), strict=False):
+            name, unit = split_header(header.strip())
+            read = number_of(cell.strip(), "," if "," in cell else ".")
+            if read is not None:
+                yield number, name, repr(read[0]), read[1] or unit

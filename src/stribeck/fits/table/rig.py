@@ -16,8 +16,8 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import is_called, is_named, normalised_header, number_of, split_header
-from stribeck.files.columns import BARE, has_dimension, si_factor
+from stribeck.files.cells import is_called, is_named, normalised_header, number_of
+from stribeck.files.columns import BARE, has_dimension, si_factor, stated_in
 from stribeck.files.text_table import TextTable
 from stribeck.fits.table.correlated import FEWEST
 from stribeck.quantities.units import InputError, show
@@ -80,17 +80,12 @@ MADE_FRICTION = "friction of forces"  # Header of the column of friction that wa
 # Headers of the columns of what is constant along each curve, made of columns that were measured.
 MADE_LOAD, MADE_RATIO, MADE_CURVE = "load", "slide_to_roll", "curve"
 
-_STATED = re.compile(
-    r"(?P<name>[^\d:;,=\t\[(]*?)\s*(?:[\[(](?P<before>[^\])]*)[\])])?\s*[:;,=\t]\s*"
-    r"(?P<value>[0-9]+(?:[.,][0-9]+)?)\s*[;,\t]?\s*[\[(]?(?P<after>[A-Za-zµμ]*)[\])]?[\s;,]*"
-)
-
 _IN_BRACKETS = re.compile(
     r"\s*(?:at )?(?P<name>[A-Za-z ]+?)\s*[=:]?\s*(?P<value>[0-9]+(?:[.,][0-9]+)?)\s*(?P<unit>[A-Za-zµμ]+)\s*"
 )
 
-# Units of temperatures, and how they are printed.
-TEMPERATURES = {"°C": "°C", "C": "°C", "degC": "°C", "deg C": "°C", "K": "K", "°F": "°F", "ºC": "°C"}
+# Zero and size of units of temperatures in degrees Celsius.
+TEMPERATURES = dict.fromkeys(("°C", "C", "degC", "deg C", "ºC"), (0.0, 1.0)) | {"K": (273.15, 1.0), "°F": (32.0, 5 / 9)}
 
 TEMPERATURE_TOLERANCE = 0.1  # Difference of temperatures that a sentence does not tell apart
 
@@ -156,13 +151,12 @@ def _declared_first(found: dict[str, list[str]], meanings: frozenset[str], setti
 
 def temperature_note(table: TextTable) -> tuple[str, ...]:
     """Return a sentence on the measured temperature, for which the viscosity of a case has to be; none without it."""
-    for name in _temperature_columns(table):
-        values = table.values(name)
-        if np.isfinite(values).any():
-            low, high, unit = np.nanmin(values), np.nanmax(values), TEMPERATURES[table.unit(name)]
-            said = f"{low:g} {unit}" if high - low < TEMPERATURE_TOLERANCE else f"{low:g} to {high:g} {unit}"
-            return (f"Temperature by {show(name)}: {said}; the viscosity of the case must be that at this temperature.",)
-    return ()
+    found = temperatures(table)
+    if found is None:
+        return ()
+    low, high = (float(end(found[0])) for end in (np.nanmin, np.nanmax))
+    said = f"{low:.4g} °C" if high - low < TEMPERATURE_TOLERANCE else f"{low:.4g} to {high:.4g} °C"
+    return (f"Temperature by {show(found[1])}: {said}; the viscosity of the case must be that at this temperature.",)
 
 
 def _temperature_columns(table: TextTable) -> list[str]:
@@ -295,8 +289,7 @@ def temperatures(table: TextTable) -> tuple[Array, str] | None:
     for name in _temperature_columns(table):
         values = table.values(name)
         if np.isfinite(values).any():
-            unit = TEMPERATURES[table.unit(name)]
-            zero, factor = {"K": (273.15, 1.0), "°F": (32.0, 5 / 9)}.get(unit, (0.0, 1.0))
+            zero, factor = TEMPERATURES[table.unit(name)]
             return (values - zero) * factor, name
     return None
 
@@ -377,45 +370,19 @@ def _length(table: TextTable, pattern: str, given: float | None) -> tuple[Array,
 
 def _stated(table: TextTable, pattern: str, dimension: str) -> tuple[float, int, str] | None:
     """Return a quantity [SI] that a line above the header gives with its unit, the row and its name; None if none does."""
-    for number, text, below in zip(*_lines_above(table), strict=True):
-        for name, unit, value in _statements(text, below):
-            read = number_of(value, "," if "," in value else ".")
-            if (
-                is_named(name, pattern)
-                and read is not None
-                and read[0] > 0
-                and has_dimension(read[1] or unit or "-", dimension)
-            ):
-                return read[0] * si_factor(read[1] or unit, dimension, name), number, name
+    for number, name, value, unit in stated_in(table):
+        read = number_of(value, "," if "," in value else ".")
+        if is_named(name, pattern) and read is not None and read[0] > 0 and has_dimension(unit or "-", dimension):
+            return read[0] * si_factor(unit, dimension, name), number, name
     return None
 
 
 def _without_unit(table: TextTable, pattern: str) -> str:
     """Return that a line above the header gives a quantity without its unit, if one does."""
-    for number, text, below in zip(*_lines_above(table), strict=True):
-        for name, unit, value in _statements(text, below):
-            if is_named(name, pattern) and number_of(value, ",") and not unit:
-                return f" (row {number} gives {show(name)} {value} without a unit)"
+    for number, name, value, unit in stated_in(table):
+        if is_named(name, pattern) and not unit:
+            return f" (row {number} gives {show(name)} {value} without a unit)"
     return ""
-
-
-def _lines_above(table: TextTable) -> tuple[list[int], list[str], list[str]]:
-    """Return number and text of each line above the header, and the text of the next line."""
-    texts = [text for _, text in table.above]
-    return [number for number, _ in table.above], texts, [*texts[1:], ""][: len(texts)]
-
-
-def _statements(text: str, below: str) -> list[tuple[str, str, str]]:
-    """Return name, unit and value of what a line gives: one quantity, or several whose values stand below their names."""
-    pieces = [text, *re.split(r"[;,|]\s+|\t|(?<=[\])]),", text)]
-    found = [each for each in (_STATED.fullmatch(piece.strip()) for piece in pieces) if each]
-    if found:
-        return [(each["name"].strip(), (each["before"] or each["after"] or "").strip(), each["value"]) for each in found]
-    mark = next((mark for mark in "\t;," if mark in text), "")
-    if not mark:
-        return []
-    pairs = zip(text.split(mark), below.split(mark), strict=False)
-    return [(*split_header(name.strip()), value.strip()) for name, value in pairs]
 
 
 def _radius_of(name: str) -> float:

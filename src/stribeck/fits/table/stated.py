@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from fnmatch import fnmatchcase
 from typing import Any
 
 from stribeck.cases.fit_settings import FitSettings, inputs_of_file
 from stribeck.files.cells import is_named
+from stribeck.files.columns import stated_in
 from stribeck.files.text_table import TextTable
 from stribeck.fits.table.rig import PATTERNS
 from stribeck.fluids.liquids import celsius
@@ -25,8 +25,6 @@ NAMES = {
     "roughness": "roughness|rms roughness|rms height|h rms|rq|sq",
     "temperature": rf"{_OF_FLUID}temp(?:erature)?",
 }
-
-_LINE = re.compile(r"\W*(?P<name>[^:=]+?)\s*(?:[\[(](?P<unit>[^\])]+)[\])])?\s*[:=]\s*(?P<value>[^:=]+?)[\s;,]*")
 
 
 def inputs_said(table: TextTable, settings: FitSettings, name: str, columns: list[str]) -> tuple[list[str], dict[str, Any]]:
@@ -70,13 +68,10 @@ def _overruled(table: dict[str, Any], by: dict[str, Any]) -> dict[str, Any]:
 def _lines(table: TextTable, settings: FitSettings) -> Iterator[tuple[str, tuple[str, int]]]:
     """Yield each input that lines above the header give once, with its text and row."""
     found: dict[str, dict[str, int]] = {}
-    for number, text in table.above:
-        line = _LINE.fullmatch(text)
-        for key, pattern in NAMES.items() if line else ():
-            assert line is not None
-            value = f"{line['value']} {line['unit'] or ''}".strip()
-            if is_named(line["name"], pattern) and _is_value(key, value, settings):
-                found.setdefault(key, {}).setdefault(value, number)
+    for number, name, value, unit in stated_in(table):
+        for key, pattern in NAMES.items():
+            if unit and is_named(name, pattern) and _is_value(key, f"{value} {unit}", settings):
+                found.setdefault(key, {}).setdefault(f"{value} {unit}", number)
     for key, values in found.items():
         if len(values) == 1:
             yield key, next(iter(values.items()))
@@ -84,8 +79,6 @@ def _lines(table: TextTable, settings: FitSettings) -> Iterator[tuple[str, tuple
 
 def _is_value(key: str, text: str, settings: FitSettings) -> bool:
     """Return whether text is a value of an input with its unit."""
-    if not re.match(r"[-+.0-9]", text) or not re.search(r"[A-Za-z°]", text):
-        return False
     try:
         celsius(text) if key == "temperature" else settings.inputs.quantities[key].checked(text)
     except InputError:
