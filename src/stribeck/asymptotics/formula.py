@@ -202,7 +202,7 @@ class Formula(Described, Generic[Arguments]):
         """Return the value, and warn where it is outside the range or missing; refuse another law than the exponential one."""
         if not isinstance(groups, Groups):
             raise InputError(f"groups = {show(groups)}; give Groups(speed, load, roughness), or contact.groups.")
-        self.check(groups)
+        self._check_groups(groups)
         call = self._signature.bind(groups, *args, **kwargs)
         for name, value in call.arguments.items():
             if name in ("boundary_friction", "beta"):
@@ -235,19 +235,8 @@ class Formula(Described, Generic[Arguments]):
         if words:
             checked_word(name, value, words)
 
-    def check(self, groups: Groups) -> None:
-        """Refuse groups of the other geometry, of another model than the article's, and of a law for which it was not derived.
-
-        Parameters
-        ----------
-        groups : Groups
-            States.
-
-        Raises
-        ------
-        InputError
-            If the formula is not about such states.
-        """
+    def _check_groups(self, groups: Groups) -> None:
+        """Refuse groups of the other geometry or another model, and of a law for which the formula was not derived."""
         if groups.geometry != self.geometry:
             bodies = {"line": "a cylinder", "point": "a ball"}
             raise InputError(

@@ -12,6 +12,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import brentq
 
 from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.documentation import described
@@ -142,10 +143,7 @@ def boundary_film_with_free_exit(load: float) -> FreeExit:
         gradient = (gap - gap_at_end) / gap**3 / np.cosh(s) ** 2 * ds
         return float(gradient.sum()), float(gradient @ (np.tanh(s) - math.tanh(end)))
 
-    low, high = -8.0, 0.0  # the exit lies behind the middle, at s < 0; the pressure there falls with its distance
-    for _ in range(80):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if integrals(middle)[0] < 0 else (low, middle)
-    end = 0.5 * (low + high)
+    # The exit lies behind the middle, at s < 0; the pressure there falls with its distance.
+    end = float(brentq(lambda s: integrals(s)[0], -8.0, 0.0, xtol=1e-15, rtol=1e-15))
     share = 2 / math.pi * integrals(end)[1]
     return FreeExit(-math.tanh(end), half_log + math.log(math.cosh(end)), share)

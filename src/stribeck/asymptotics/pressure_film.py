@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
@@ -81,13 +81,6 @@ class Inlet(ByValue, Shown):
     steepest_rise_error: Annotated[float, "estimated absolute error of steepest_rise", "Pa m-1"]
     inlet_length: Annotated[float, "length over which the edge makes the film", "m"]
     spacing: Annotated[float, "step of the table at the edge", "m"]
-
-    def _scaled(self, L: float, P: float) -> Inlet:
-        """Return the inlet in other units, in which the present ones of length and pressure are L and P."""
-        lengths = {name: getattr(self, name) * L for name in ("film", "edge", "inlet_length", "spacing")}
-        roots = {name: getattr(self, name) * P / L**0.5 for name in ("edge_coefficient", "edge_coefficient_error")}
-        rises = {name: getattr(self, name) * P / L for name in ("steepest_rise", "steepest_rise_error")}
-        return replace(self, **lengths, **roots, **rises)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -231,12 +224,8 @@ def film_of_pressure(
         if value <= 0:
             raise InputError(f"{name} = {show(value)}; it must be above zero.")
     E, eta = numbers.values()
-    L, P = float(np.ptp(xs)), float(ps.max())  # Scales of the table
-    tables = (xs / L, ps / P, "left"), (-xs[::-1] / L, ps[::-1] / P, "right")
-    drags = (eta / P * U / L for U in speeds)
-    forward, backward = (
-        _inlet(DryPressure.of(*each), E / P, drag)._scaled(L, P) for each, drag in zip(tables, drags, strict=True)
-    )
+    tables = (xs, ps, "left"), (-xs[::-1], ps[::-1], "right")
+    forward, backward = (_inlet(DryPressure.of(*each), E, eta * U) for each, U in zip(tables, speeds, strict=True))
     there, back = forward.film * forward.error, backward.film * backward.error
     net = (forward.film - backward.film) / 2
     error = Films(there, back, (there + back) / 2)

@@ -77,7 +77,6 @@ def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, 
 
 def _viscous(groups: Groups, odds: Array, beta: float, definition: Definition) -> Array:
     a1, a2, a3, a4 = SHEAR_COEFFICIENTS
-    m1, m2, m3, m4, m5 = FIRST_MOMENT_COEFFICIENTS
     b1, b2, b3, b4, b5, b6, b7 = MOMENT_COEFFICIENTS
     lambda_, F, kappa = np.broadcast_arrays(groups.speed, groups.load, groups.relative_roughness)
     found = np.array(np.broadcast_to(hydrodynamic.friction_uniform.function(groups, beta), odds.shape))
@@ -89,8 +88,14 @@ def _viscous(groups: Groups, odds: Array, beta: float, definition: Definition) -
     if definition == "balanced":
         return found
     G, _ = gaps(odds, F)
-    first = m1 * G**-m2 * (1 + m3 * G) ** -m4 * (1 + m5 * G) ** (m2 + m4 - 3)
+    first = first_moment(G, FIRST_MOMENT_COEFFICIENTS)
     share_to_q = np.exp(-np.logaddexp(0.0, odds) * (b1 + b2 / G) / (1 + b3 * kappa**b4))
     edge = 1 + b5 * kappa**b6 * (-0.5 * np.log(F)) ** b7
     found[rough] += beta * np.sqrt(F) * lambda_ / kappa**2 * first * share_to_q * edge
     return found
+
+
+def first_moment(G: Array, coefficients: tuple[float, float, float, float, float]) -> Array:
+    """Return the moment of the contact pressure of first order in the speed, by the central gap in kappa u_Hz."""
+    m1, m2, m3, m4, m5 = coefficients
+    return np.asarray(m1 * G**-m2 * (1 + m3 * G) ** -m4 * (1 + m5 * G) ** (m2 + m4 - 3))

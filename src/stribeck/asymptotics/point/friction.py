@@ -22,6 +22,7 @@ from stribeck.asymptotics.point.film import film_of
 from stribeck.asymptotics.point.logarithm import LOGARITHM_COEFFICIENT, friction_of
 from stribeck.asymptotics.point.rigid import GAP_COEFFICIENT
 from stribeck.asymptotics.point.sharing import FIT_RANGE, film_speed_ratio, log_odds, speed_of_share
+from stribeck.asymptotics.uniform import first_moment
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
 
@@ -166,11 +167,4 @@ def _moment(F: Array, kappa: Array, odds: Array) -> Array:
     G = gap_at_rest(F, kappa) + more
     q = b7 + (b1 + b2 / G) / ((1 + b3 * kappa**b4 * G**b6) * (1 + b5 * more))
     edges = edge_factor(gap_at_rest(F), kappa, MOMENT_EDGE_COEFFICIENTS)
-    return np.asarray(first_moment(G) * np.exp(-more * q) * edges)
-
-
-def first_moment(A: Value) -> Array:
-    """Return the moment of the fluid's pressure that Slow.moment integrates, less its sign, in closed form."""
-    c1, c2, c3, c4, c5 = FIRST_MOMENT_COEFFICIENTS
-    G = np.asarray(A)
-    return np.asarray(c1 * G**-c2 * (1 + c3 * G) ** -c4 * (1 + c5 * G) ** (c2 + c4 - 3))
+    return np.asarray(first_moment(G, FIRST_MOMENT_COEFFICIENTS) * np.exp(-more * q) * edges)

@@ -46,9 +46,7 @@ def hamrock_dowson_soft(groups: Groups, slope: float = 0.1) -> Value:
     Its exponent 0.64 is that of a range of light loads; the exact one is 3/5 for slow speed.  At a/R = 0.1 from 31 %
     below at speed 1e-5 to 28 % above at 10; it goes as :math:`(a/R)^{-0.1}`.
     """
-    ratio = _slope(slope)
-    U, W = groups.speed * ratio**4 / (12 * math.pi), 2 / 3 * ratio**3
-    return (7.32 * (1 - 0.72 * math.exp(-0.28)) * U**0.64 * W**-0.22 / ratio**2)[()]
+    return _film(groups, slope, 7.32 * (1 - 0.72 * math.exp(-0.28)), 0.64, -0.22)
 
 
 @_regression(
@@ -65,9 +63,7 @@ def de_vicente(groups: Groups, slope: float = 0.1) -> Value:
     Its exponents are nearly the exact ones, 3/5 and -2/15.  At a/R = 0.1 between 0.7 % below at speed 1e-6 and 10 %
     above at 0.5; it goes as :math:`(a/R)^{-0.02}`.
     """
-    ratio = _slope(slope)
-    U, W = groups.speed * ratio**4 / (12 * math.pi), 2 / 3 * ratio**3
-    return (3.3 * U**0.60 * W**-0.14 / ratio**2)[()]
+    return _film(groups, slope, 3.3, 0.60, -0.14)
 
 
 @_regression(
@@ -96,8 +92,11 @@ def nijenbanning_venner_moes(groups: Groups) -> Value:
     return found
 
 
-def _slope(slope: Value) -> Value:
-    found = real_array("slope", slope)
-    if not ((found > 0) & np.isfinite(found)).all():
+def _film(groups: Groups, slope: Value, factor: float, of_speed: float, of_load: float) -> Value:
+    """Return a film that goes as powers of U_HD and W_HD."""
+    ratio = real_array("slope", slope)
+    if not ((ratio > 0) & np.isfinite(ratio)).all():
         raise InputError(f"slope = {show(slope)}; it is a/R and must be positive.")
+    U, W = groups.speed * ratio**4 / (12 * math.pi), 2 / 3 * ratio**3
+    found: Value = (factor * U**of_speed * W**of_load / ratio**2)[()]
     return found
