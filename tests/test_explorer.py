@@ -15,7 +15,7 @@ from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from types import SimpleNamespace
-from urllib.parse import parse_qsl
+from urllib.parse import parse_qsl, urlencode
 from xml.etree import ElementTree
 
 import numpy as np
@@ -23,6 +23,8 @@ import pytest
 from command_line import EXAMPLES
 
 import stribeck as sb
+from stribeck.cases.law import SOURCES
+from stribeck.cases.model_parts import PART_TABLES
 from stribeck.cli import main
 from stribeck.explorer import charts, curves, server, table
 from stribeck.explorer import downloads as files
@@ -305,6 +307,21 @@ def test_what_no_address_can_hold_is_refused_at_load(tmp_path):
 def test_an_uploaded_case_that_names_a_file_says_what_to_do(tmp_path):
     with pytest.raises(sb.InputError, match=r"case.toml: \[table\] file = 'law.csv' is a file that the browser did not send"):
         files.read_case("C:\\data\\case.toml", b'[table]\nfile = "law.csv"\n')
+
+
+def test_neither_a_link_nor_an_upload_reads_a_file_of_this_machine(tmp_path):
+    secret = tmp_path / "secret.csv"
+    secret.write_text("the secret;another\n1;2\n")
+    laws = {name: source.laws[-1] for name, source in SOURCES.items()}
+    tables = {name: source.keys for name, source in SOURCES.items()} | {name: part.keys for name, part in PART_TABLES.items()}
+    for name, key in ((name, key) for name, keys in tables.items() for key in keys):
+        own = {"law": laws[name]} if name in laws else {"profile.shape": "table"} if name == "profile" else {}
+        opened = reopened(urlencode(own | {f"{name}.{key}": str(secret)}))
+        assert "the secret" not in str(opened), (name, key)
+        case = {"contact": START.tables["contact"] | own, name: {key: str(secret)}}
+        with pytest.raises(sb.InputError) as problem:
+            files.read_case("case.toml", toml_text(case).encode())
+        assert "the secret" not in str(problem.value), (name, key)
 
 
 def test_odd_names_of_uploads_become_plain_ones(subtests):

@@ -23,7 +23,13 @@ CASES = {
         PERSSON | {"ra": '"0.8 um"'},
         {"surface": {key: value for key, value in SURFACE.items() if key != "h_rms"}},
     ),
-    "Persson, spectrum": (PERSSON, {"surface": {"spectrum": '"spectrum.csv"'}}),
+    "Persson, spectrum": (
+        PERSSON | {"viscosity": None},
+        {
+            "surface": {"spectrum": '"spectrum.csv"'},
+            "fluid": {"flow_curve": '"oil.csv"', "model": '"newtonian"'},
+        },
+    ),
     "Persson, shape alone": ({"law": '"persson"'}, {"surface": SURFACE | {"shape_only": "true"}}),
     "Greenwood-Williamson, asperities": (NOTHING | {"law": '"greenwood-williamson"'}, {"asperities": ASPERITIES}),
     "table": ({"law": '"table"'}, {"table": {"file": '"law.csv"'}}),
@@ -56,6 +62,7 @@ def written(folder, contact, tables):
     (folder / "law.csv").write_text(f"gap [m],pressure [Pa]\n{rows}\n")
     rows = "\n".join(f"{q},{density}" for q, density in zip(WAVENUMBER, DENSITY, strict=True))
     (folder / "spectrum.csv").write_text(f"wavenumber [1/m],density [m^4]\n{rows}\n")
+    (folder / "oil.csv").write_text("rate [1/s],viscosity [mPa*s]\n" + "\n".join(f"{rate},50" for rate in range(1, 9)))
     case = folder / "case.toml"
     case.write_text(case_text(contact, **tables))
     contact = sb.load_case(case).contact

@@ -23,6 +23,9 @@ from stribeck.solids.prony_fit import from_master_curve
 # Argument of the fluid -> the laws that a key of ``[fluid]`` names.
 FLUID_KINDS = {name: KINDS[name] for name in ("rheology", "viscosity", "density")}
 
+# Table and key of each file that a case may name.
+FILES = (("surface", "spectrum"), ("table", "file"), ("fluid", "flow_curve"), ("solid", "master_curve"), ("profile", "x"))
+
 CONDITIONS = tuple(dict.fromkeys(name for preset in PRESETS.values() for name in preset.conditions))
 
 # Keys of [fluid] that bring the viscosity of the contact along -> the keys that go with them.
@@ -140,6 +143,16 @@ def _with_viscosity(table: dict[str, Any], source: str, found: ReadParts) -> dic
     contact["viscosity"] = liquid.viscosity
     found.sentences.append(f"viscosity = {format_si(liquid.viscosity, 'viscosity', 4)} from {said}")
     return {"fluid": liquid.fluid}
+
+
+def fluid_table(fluid: Fluid) -> dict[str, Any]:
+    """Return a fluid as the table ``[fluid]``, with its numbers in SI units; empty for one that is always the same."""
+    found: dict[str, Any] = {}
+    for name, kind in FLUID_KINDS.items():
+        law = getattr(fluid, name)
+        if law is not None:
+            found |= {kind.key: law.name} | {each: getattr(law, each) for each in numbers_of(type(law))}
+    return found
 
 
 def _file_of(key: str, table: dict[str, Any], folder: Path | None, place: str) -> Path:

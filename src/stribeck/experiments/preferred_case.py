@@ -8,7 +8,7 @@ from typing import Any
 
 from stribeck.cases.case import Case
 from stribeck.cases.law import INPUTS_OF_SURFACES, KEYS_OF_SURFACES
-from stribeck.cases.model_parts import FLUID_KINDS, SOURCES_OF_VISCOSITY
+from stribeck.cases.model_parts import FILES, FLUID_KINDS, SOURCES_OF_VISCOSITY, fluid_table
 from stribeck.cases.reading import load_case
 from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contacts.contact import Contact
@@ -16,15 +16,9 @@ from stribeck.experiments.compare import Comparison
 from stribeck.files.toml import toml_text
 from stribeck.files.writing import PathLike
 from stribeck.fits.case_file import write_fitted_case
-from stribeck.quantities.schema import numbers_of
 from stribeck.quantities.units import InputError
 
 __all__ = ["write_preferred_case"]
-
-# Tables and keys that name files beside the case.
-FILES = (
-    ("surface", "spectrum"), ("table", "file"), ("fluid", "flow_curve"), ("solid", "master_curve"), ("profile", "x")
-)  # fmt: skip
 
 
 def write_preferred_case(comparison: Comparison, case: Case, path: PathLike, *, force: bool = False) -> str:
@@ -55,20 +49,10 @@ def _tables_of(case: Case, contact: Contact) -> dict[str, Any] | None:
     if contact.fluid.name != own.fluid.name:
         if not SOURCES_OF_VISCOSITY.keys().isdisjoint(tables.get("fluid", {})):
             tables["contact"] = tables["contact"] | {"viscosity": contact.viscosity}
-        tables["fluid"] = _fluid_table(contact)
+        tables["fluid"] = fluid_table(contact.fluid) or {"model": FLUID_KINDS["rheology"].nothing}
     if (contact.cavitation, contact.cavity_pressure) != (own.cavitation, own.cavity_pressure):
         tables["cavitation"] = {"model": contact.cavitation.value, "cavity_pressure": contact.cavity_pressure}
     for table, key in FILES:
         if tables != case.tables and isinstance(tables.get(table, {}).get(key), str):
             tables[table] = tables[table] | {key: str((case.path.parent / tables[table][key]).resolve())}
     return tables
-
-
-def _fluid_table(contact: Contact) -> dict[str, Any]:
-    """Return the table of the fluid of a contact: the names of its laws and their numbers."""
-    table: dict[str, Any] = {}
-    for name, kind in FLUID_KINDS.items():
-        law = getattr(contact.fluid, name)
-        if law is not None:
-            table |= {kind.key: law.name, **{key: getattr(law, key) for key in numbers_of(type(law))}}
-    return table or {"model": FLUID_KINDS["rheology"].nothing}

@@ -15,6 +15,7 @@ from typing import Any
 
 from stribeck.cases.case import Case
 from stribeck.cases.law import INPUTS_OF_SURFACES
+from stribeck.cases.model_parts import FILES
 from stribeck.cases.reading import load_case
 from stribeck.contact_laws.table import TableLaw
 from stribeck.contacts.contact import Contact
@@ -188,7 +189,7 @@ def _edited(text: str, edits: _Edits, folder: Path) -> list[str]:
         new = edits.at.get((table, key[1])) if key else None
         if new is not None:
             lines += [f"# before the fit: {line.strip()}", *new]
-        elif key and key[1] in ("file", "spectrum") and table in ("table", "surface"):
+        elif key and (table, key[1]) in FILES:
             lines.append(_found_from_anywhere(line, folder))
         else:
             lines.append(line)

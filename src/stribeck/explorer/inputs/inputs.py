@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import Any, Literal, Self
 
 from stribeck.cases.case import Case
-from stribeck.cases.law import INPUTS_OF_SURFACES, SOURCES, self_contained
-from stribeck.cases.model_parts import FLUID_KINDS, SOURCES_OF_VISCOSITY, gives_modulus, take_parts
+from stribeck.cases.law import INPUTS_OF_SURFACES, self_contained
+from stribeck.cases.model_parts import FILES, SOURCES_OF_VISCOSITY, fluid_table, gives_modulus, take_parts
 from stribeck.cases.reading import check_case
 from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contacts.contact import Contact
@@ -29,10 +29,9 @@ from stribeck.contacts.groups import GROUP_INPUTS
 from stribeck.contacts.inputs import InputTable
 from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.explorer.inputs.typed import entries_of, examples
-from stribeck.fluids.description import Fluid
 from stribeck.fluids.liquids import Liquid
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.schema import Input, numbers_of
+from stribeck.quantities.schema import Input
 from stribeck.quantities.units import DIMENSIONS, InputError, read_number, show, to_si
 
 Abscissa = Literal["speed", "hersey"]
@@ -230,16 +229,6 @@ def from_case(case: Case) -> Inputs:
     return Inputs.of(tables)
 
 
-def fluid_table(fluid: Fluid) -> dict[str, Any]:
-    """Return a fluid as the table ``[fluid]``, with its numbers in SI units; empty for one that is always the same."""
-    found: dict[str, Any] = {}
-    for name, kind in FLUID_KINDS.items():
-        law = getattr(fluid, name)
-        if law is not None:
-            found |= {kind.key: law.name} | {each: getattr(law, each) for each in numbers_of(type(law))}
-    return found
-
-
 def with_liquid(inputs: Inputs, liquid: Liquid) -> Inputs:
     """Return the inputs with a liquid: its viscosity, and how that changes."""
     return inputs.edited({"viscosity": liquid.viscosity}, inputs.tables | {"fluid": fluid_table(liquid.fluid)})
@@ -247,7 +236,7 @@ def with_liquid(inputs: Inputs, liquid: Liquid) -> Inputs:
 
 def refuse_files(tables: Mapping[str, Any], instead: str) -> None:
     """Refuse tables that name files, which did not come with them; ``instead`` is what to do."""
-    for name, key in (*((name, source.file) for name, source in SOURCES.items()), ("profile", "x")):
+    for name, key in FILES:
         table = tables.get(name)
         if isinstance(table, dict) and isinstance(table.get(key), str):
             raise InputError(f"[{name}] {key} = {show(table[key])} is a file that the browser did not send; {instead}.")
