@@ -79,7 +79,7 @@ class Outward:
 
 
 def outward(A: Value, x: Value | None = None) -> Outward:
-    """Return the contact from |x| < 1, or from its centre, to its edge at -1/2 ln F = A."""
+    """Return the contact from a position inside it, or from its centre, to its edge at -1/2 ln F = A."""
     whole = _panels(np.asarray(A, dtype=float)[..., None, None], np.zeros((1, 1)))
     H_cubed = whole.H**3
     g_star = whole.integral(whole.g / H_cubed) / whole.integral(1 / H_cubed)
