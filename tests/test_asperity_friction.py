@@ -51,8 +51,8 @@ def test_near_full_contact_friction_is_the_stress_times_the_dry_width(seal):
 
 @pytest.mark.parametrize(
     ("h_rms", "shear", "ratio"),
-    [(0.3e-6, True, 1.70), (0.3e-6, False, 2.89), (20e-6, True, 2.89)],
-    ids=("stress", "coefficient", "stress, small area"),
+    [(0.3e-6, True, 1.70), (0.3e-6, False, 2.89)],
+    ids=("stress", "coefficient"),
 )
 def test_o_rings_follow_the_width_and_not_the_load_where_a_stress_acts_over_all_of_it(seal, h_rms, shear, ratio):
     """Load per length of the O-ring by its squeeze and by the sealed pressure on its cord of 3.53 mm."""

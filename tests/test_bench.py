@@ -73,11 +73,11 @@ def note_of(found, words):
     return any(words in each for each in found.notes)
 
 
-# Reads 40 files, each of 8 steps of two directions.
+# Reads 40 files, each of 4 steps of two directions.
 def test_of_95_per_cent_intervals_90_to_99_per_cent_hold_the_truth(written):
     inside = []
     for seed in range(40):
-        rows = stepped(np.random.default_rng(seed), speeds=SPEEDS[1::2])
+        rows = stepped(np.random.default_rng(seed), 80, speeds=SPEEDS[1::2])
         found = sb.bench.read(written(text_of(rows)))
         assert len(found) == 4
         miss = np.abs(found.friction - curve(1e3 * found.speed))

@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 import types
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -157,3 +158,12 @@ def test_the_explorer_is_timed(run, monkeypatch):
         monkeypatch.delenv(name)  # the server would take itself for a part of the tests
     tables = check(run("explorer_latency", "--number", "1"))
     assert [len(rows) for _, _, *rows in tables] == [5, 5, 5]  # sliders of a cylinder, its solved curves, sliders of a ball
+
+
+def test_a_call_reaches_the_first_residual_through_few_files(subtests, load_benchmark):
+    for walk, files in [("in_python", 12), ("on_the_command_line", 16)]:
+        with subtests.test(walk=walk, files=files):
+            found = getattr(load_benchmark("walk"), walk)()
+            assert found[-1] == "equations/line.py"
+            assert len(set(found)) <= files
+            assert max(Counter(found).values()) <= 8  # a path asks its corrector, and this one the rigid guess, in turns

@@ -12,16 +12,6 @@ MIXED = (1e-5, 0.1, 1e-4)
 DEFINITIONS = ("balanced", "published")
 
 
-def test_friction_is_boundary_friction_times_load_share_and_beta_times_the_viscous_part(subtests, solved):
-    for definition in DEFINITIONS:
-        with subtests.test(definition=definition):
-            state = solved(*MIXED)
-            unit, scaled = (state.friction(*coefficients, definition) for coefficients in ((1.0, 1.0), (0.5, 0.02)))
-            assert scaled.asperities == pytest.approx(0.5 * state.contact_load_share, rel=1e-15)
-            assert scaled.fluid == pytest.approx(0.02 * unit.fluid, rel=1e-15)
-            assert scaled.total == scaled.asperities + scaled.fluid
-
-
 def test_the_definitions_agree_where_asperities_carry_nothing_and_not_in_the_boundary_regime(solved):
     smooth, rough = solved(1e-4, 0.1, 0.0), solved(1e-8, 0.1, 1e-4)
     balanced, published = (smooth.friction(definition=d) for d in DEFINITIONS)

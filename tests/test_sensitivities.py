@@ -230,23 +230,10 @@ def test_at_fixed_groups_beta_moves_the_viscous_friction_by_its_closed_form():
 def test_sensitivities_of_balls_with_other_fluids_and_solids_are_those_of_solved_states(model):
     contact = ball_with(model)
     _, found = friction_sensitivities(contact, rtol=1e-6)
-    for name in ("speed", "load", "modulus", "radius", "viscosity", "roughness", "alpha", "beta", "slide_to_roll"):
+    assert {name for name, _ in contact.inputs()} <= set(found)
+    of_edge = ["wetted_radius"] if contact.wetted_radius is not None else []
+    for name in ("speed", "load", "modulus", "radius", "viscosity", "roughness", "alpha", "beta", "slide_to_roll", *of_edge):
         assert found[name] == pytest.approx(differences(contact, name, step=0.01, rtol=1e-6), abs=5e-4), name
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("edge", [None, "2 mm"])
-def test_sensitivities_of_a_ball_are_those_of_frictions_beside_it(edge):
-    contact = ball_of(sb.Groups(1e-2, 1e-2, 5e-4, geometry="point"), wetted_radius=edge)
-    solution, found = friction_sensitivities(contact, rtol=1e-6)
-    assert set(found) == {name for name, _ in contact.inputs()}
-    for name in ("speed", "load", "beta", "radius", "slide_to_roll", *(["wetted_radius"] if edge else [])):
-        ends = [
-            sb.solve(contact.replace(**{name: getattr(contact, name) * math.exp(step)}), rtol=1e-6).friction().total
-            for step in (0.02, -0.02)
-        ]
-        assert found[name] == pytest.approx(math.log(ends[0] / ends[1]) / 0.04, abs=3e-3), name
-    assert solution.contact is contact
 
 
 def test_asperities_of_a_ball_that_hardly_slides_stick_as_on_a_curve():
