@@ -47,7 +47,6 @@ SLOW_RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-3), Li
 # Range of the formulas for the small share of the fluid.
 SMALL_SHARE_RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 0.01))
 
-
 _slow = partial(
     formula,
     plane="mixed",

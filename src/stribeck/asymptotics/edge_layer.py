@@ -27,8 +27,6 @@ from stribeck.numerics.threads import one_blas_thread
 
 LAYER_LOAD = 0.5 * np.pi  # Integral of P - P_H over the layer.
 
-LAYER_RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-6, 1e-2))
-
 
 def _coordinate(groups: Groups, x: Value, printed: bool) -> Array:
     kappa = groups.relative_roughness
@@ -39,7 +37,7 @@ def _coordinate(groups: Groups, x: Value, printed: bool) -> Array:
 _edge = partial(
     formula,
     plane="rest",
-    limits=LAYER_RANGE,
+    limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-6, 1e-2)),
     small="relative_roughness",
     error_order=2 / 3,
     source="[BP] Appendix B; the edge at 1 - kappa is ours",

@@ -20,14 +20,11 @@ from stribeck.contacts.groups import Groups
 from stribeck.numerics.newton import Dense, StepControl, root_find
 from stribeck.numerics.threads import one_blas_thread
 
-SLOW_RANGE = (Limit("speed", 1e-10, 1e-3),)
-
-
 _layer = partial(
     formula,
     uses=("speed",),
     plane="smooth",
-    limits=SLOW_RANGE,
+    limits=(Limit("speed", 1e-10, 1e-3),),
     small="speed",
     error_order=0.4,
     source="[BP] Section 'Smooth limit', after Snoeijer, Eggers and Venner (2013); solved here",

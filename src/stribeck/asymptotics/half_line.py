@@ -26,21 +26,6 @@ from stribeck.solids.half_plane import deflection_operator
 
 EQUAL_PANELS_UP_TO = 2.0  # Distance to which panels have equal width; farther out each is as wide as its distance.
 
-Roots = tuple[Array, Array, Array]
-
-
-def _roots(xi: Array, a: float) -> Roots:
-    r"""Return :math:`m = |\xi + i a|`, :math:`(m - \xi)^{1/2}` and :math:`(m + \xi)^{1/2}`, without cancellation."""
-    m = np.hypot(xi, a)
-    large = np.sqrt(m + np.abs(xi))
-    inside = xi < 0
-    return m, np.where(inside, large, a / large), np.where(inside, a / large, large)
-
-
-def _differences(one: Roots, two: Roots, three: Roots) -> tuple[Array, Array]:
-    """Return the differences of (m - xi)**(1/2) from a = 1 to 2 and from 2 to 3, without cancellation."""
-    return 3 / ((one[0] + two[0]) * (one[1] + two[1])), 5 / ((two[0] + three[0]) * (two[1] + three[1]))
-
 
 @dataclass(frozen=True, eq=False)
 class Base:
@@ -49,18 +34,29 @@ class Base:
     xi: Array  # Positions, the contact at negative ones
 
     @cached_property
-    def _roots(self) -> tuple[Roots, Roots, Roots]:
-        return _roots(self.xi, 1.0), _roots(self.xi, 2.0), _roots(self.xi, 3.0)
+    def _roots(self) -> tuple[Array, Array, Array]:
+        r"""For each a :math:`m = |\xi + i a|`, :math:`(m - \xi)^{1/2}` and :math:`(m + \xi)^{1/2}`, without cancellation."""
+        a = np.array([1.0, 2.0, 3.0]).reshape(-1, *(1,) * np.ndim(self.xi))
+        m = np.hypot(self.xi, a)
+        large = np.sqrt(m + np.abs(self.xi))
+        inside = np.less(self.xi, 0)
+        return m, np.where(inside, large, a / large), np.where(inside, a / large, large)
+
+    @property
+    def _steps(self) -> tuple[Array, Array]:
+        """Differences of (m - xi)**(1/2) from a = 1 to 2 and from 2 to 3, without cancellation."""
+        m, root, _ = self._roots
+        return 3 / ((m[0] + m[1]) * (root[0] + root[1])), 5 / ((m[1] + m[2]) * (root[1] + root[2]))
 
     @property
     def root(self) -> Array:
         r"""A positive pressure of the same far field inside, :math:`[(1 + \xi^2)^{1/2} - \xi]^{1/2}`."""
-        return self._roots[0][1]
+        return np.asarray(self._roots[1][0])
 
     @property
     def root_excess(self) -> Array:
         """The difference of :attr:`root` and :attr:`pressure`, to full relative accuracy."""
-        first, second = _differences(*self._roots)
+        first, second = self._steps
         return 2 * first - second
 
     @property
@@ -71,14 +67,15 @@ class Base:
     @property
     def slope(self) -> Array:
         """Its derivative."""
-        return np.asarray(sum(-0.5 * c * f / m for c, (m, f, _) in zip((3, -3, 1), self._roots, strict=True)))
+        m, root, _ = self._roots
+        return np.asarray(sum(-0.5 * c * f / each for c, f, each in zip((3, -3, 1), root, m, strict=True)))
 
     @property
     def gap(self) -> Array:
         """The gap H_B."""
-        first, second = _differences(*self._roots)
-        (_, _, g1), (_, _, g2), (_, _, g3) = self._roots
-        return (3 * g1**3 - 3 * g2**3 + g3**3) / 3 - 3 * (second - first)
+        first, second = self._steps
+        g = self._roots[2]
+        return np.asarray((3 * g[0] ** 3 - 3 * g[1] ** 3 + g[2] ** 3) / 3 - 3 * (second - first))
 
 
 @dataclass(frozen=True, eq=False)

@@ -37,7 +37,6 @@ FRICTION_COEFFICIENTS = (3.69, 2.09, -1.10)
 
 MAX_U = 1e50  # u up to which the laws are taken in powers of u, which overflow from 1e77 on.
 
-
 _smooth = partial(formula, uses=("speed",), plane="smooth")
 _slow = partial(_smooth, limits=(Limit("speed", 0.0, 1e-3),), small="speed", error_order=0.4)
 _fast = partial(_smooth, limits=(Limit("speed", 1e3),), small="1/speed", error_order=2 / 3)

@@ -32,7 +32,6 @@ SATURATION_COEFFICIENT = 1.85
 
 FIT_RANGE = (Limit("film_ratio", 3.0), Limit("relative_roughness", 1e-4, 0.1), Limit("load", 1e-3, 0.7))
 
-
 _mixed = partial(formula, plane="mixed")
 
 

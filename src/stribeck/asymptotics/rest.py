@@ -17,15 +17,11 @@ from stribeck.asymptotics.formula import Limit, Value, formula, second
 from stribeck.contacts.groups import Groups
 from stribeck.solids import hertz
 
-LARGE_INDENTATION = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-2))
-SMALL_INDENTATION = (Limit("load", 1e-8, 0.5), Limit("1/relative_roughness", 0, 0.1))
-
-
 _large_indentation = partial(
     formula,
     uses=("load", "relative_roughness"),
     plane="rest",
-    limits=LARGE_INDENTATION,
+    limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-2)),
     small="relative_roughness",
     error_order=1,
 )
@@ -80,7 +76,7 @@ _small_indentation = partial(
     formula,
     uses=("load", "relative_roughness"),
     plane="rest",
-    limits=SMALL_INDENTATION,
+    limits=(Limit("load", 1e-8, 0.5), Limit("1/relative_roughness", 0, 0.1)),
     small="1/relative_roughness",
     error_order=1,
 )

@@ -43,7 +43,6 @@ DIFFERENCE_STEP = 1e-4  # Step of the differences in ln(speed).
 
 ROUGHNESS_RANGE = (1e-7, 1e3)  # Relative roughness between which the merging of the uniform law is sought.
 
-
 _at_minimum = partial(formula, uses=("load", "roughness"), plane="mixed", limits=FIT_RANGE)
 
 

@@ -27,7 +27,6 @@ SHEAR_COEFFICIENTS = (0.6179, 8.341, 0.3064, 0.05872)  # Fitted coefficients of 
 FIRST_MOMENT_COEFFICIENTS = (0.3524, 0.7752, 0.4341, 1.0889, 4.999)
 MOMENT_COEFFICIENTS = (0.9251, 3.692, 11.52, 0.4319, 7.886, 0.7303, 1.237)  # Fitted coefficients of the moment at any speed.
 
-
 _uniform = partial(formula, plane="mixed")
 
 

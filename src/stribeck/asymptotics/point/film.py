@@ -33,7 +33,6 @@ SIDE_COEFFICIENTS = (0.6817, 0.9625, 1.0682)
 # Fitted coefficients d1 .. d4, n2 .. n4 of :func:`central_gap`.
 BRIDGE_COEFFICIENTS = (-0.35423, -0.055968, -0.05253, 0.094462, 0.53295, -0.10852, -0.0096834)
 
-
 _film = partial(formula, uses=("speed",), plane="smooth", geometry="point", limits=(Limit("speed", 0.0, 1e-2),))
 
 

@@ -17,7 +17,6 @@ from stribeck.solids import hertz
 
 HERTZ_OFFSET = -1.0  # Offset of the dry smooth contact [u_Hz]: the ball has come closer by the indentation.
 
-
 _dry = partial(
     formula,
     uses=(),

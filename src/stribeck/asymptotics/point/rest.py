@@ -23,18 +23,15 @@ CATALAN = 0.915965594177219  # Catalan's constant.
 # Coefficient of kappa**2 in the offset beside its logarithm, from states at kappa = 1e-2 and 1e-4; the logarithm is derived.
 OFFSET_CONSTANT = 0.6532
 
-LARGE_INDENTATION = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-2))
-SMALL_INDENTATION = (Limit("load", 1e-7, 0.5), Limit("1/relative_roughness", 0, 0.2))
 
 GAUSS_RULE = np.polynomial.legendre.leggauss(40)  # Rule of the correction of the pressure, good to rounding.
-
 
 _large_indentation = partial(
     formula,
     uses=("load", "relative_roughness"),
     plane="rest",
     geometry="point",
-    limits=LARGE_INDENTATION,
+    limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-2)),
     small="relative_roughness",
     error_order=1,
 )
@@ -147,7 +144,7 @@ _small_indentation = partial(
     uses=("load", "relative_roughness"),
     plane="rest",
     geometry="point",
-    limits=SMALL_INDENTATION,
+    limits=(Limit("load", 1e-7, 0.5), Limit("1/relative_roughness", 0, 0.2)),
     small="1/relative_roughness",
     source="ours, as for the line",
 )

@@ -22,8 +22,6 @@ LIFT_COEFFICIENT = 27 * math.pi**2 / (6400 * math.sqrt(2))  # Load of the fluid 
 # h_0 over lambda**(4/5), 0.18162, at which that load is 2 pi/3.
 GAP_COEFFICIENT = (3 * LIFT_COEFFICIENT / (2 * math.pi)) ** 0.4
 
-FAST_RANGE = (Limit("speed", 1e2),)
-
 
 def gap_of(groups: Groups) -> Value:
     """Return the gap under the rigid ball."""
@@ -41,7 +39,7 @@ _rigid = partial(
 )
 
 
-@_rigid(limits=FAST_RANGE, worst=8e-4, error_order=1.2)
+@_rigid(limits=(Limit("speed", 1e2),), worst=8e-4, error_order=1.2)
 def minimum_gap(groups: Groups) -> Value:
     r"""Return the gap of a fast smooth ball.
 
