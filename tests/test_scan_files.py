@@ -142,6 +142,27 @@ def test_a_map_with_an_index_or_rounded_positions_is_that_map(tmp_path):
     assert counted.heights.shape == (48, 48) and "numbers the points" in counted.notes[0]
 
 
+def test_positions_along_both_edges_of_a_matrix_are_its_spacing(tmp_path):
+    lines = [[f"{0.5 * i:g}", *row.split("\t")] for i, row in enumerate(matrix().splitlines())]
+    top = ["", *(f"{1.0 * i:g}" for i in range(48))]
+    scan = read(tmp_path, "\n".join("\t".join(row) for row in [top, *lines]), unit="um")
+    assert scan.spacing == pytest.approx((1e-6, 0.5e-6)) and scan.heights == pytest.approx(MAP.T * 1e-6, abs=6e-12)
+    with pytest.raises(sb.InputError, match="the first column of the matrix rises in even steps, as positions do"):
+        read(tmp_path, "\n".join("\t".join(row) for row in lines), unit="um", spacing="1 um")
+
+
+def test_a_code_for_no_height_that_the_file_declares_is_missing(tmp_path):
+    cells = [f"{v:.4f}" for v in LINE]
+    cells[7] = cells[9] = "0.1234"
+    scan = read(tmp_path, "No data value: 0.1234\nx (um),z (um)\n" + rows(X, cells, form=("{:.3f}", "{}")))
+    assert scan.missing == 2 and scan.notes == ("2 points hold 0.1234, a code for no height, and count as missing.",)
+
+
+def test_a_profile_without_names_may_number_its_points(tmp_path):
+    scan = read(tmp_path, rows(range(400), X, LINE, form=("{}",)), unit="um")
+    assert scan.heights == pytest.approx(LINE * 1e-6, abs=6e-11) and "numbers the points" in scan.notes[0]
+
+
 def test_marks_of_instruments_for_no_height_are_missing_and_named(subtests, tmp_path_factory):
     for mark in [
         "-9999",

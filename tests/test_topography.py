@@ -224,6 +224,17 @@ TEXTS = {
     "same point": ("0;0;1\n1;0;1\n0;1;1\n1;1;2\n1;1;3\n", {"unit": "um"}, "line 5 repeats the position"),
     "no area": ("0;0;1\n0;0;1\n", {"unit": "um"}, "all points have the same x"),
     "either comma": ("1,5\n2,5\n", {"unit": "um"}, "may be two columns or one number"),
+    "scattered points": (
+        "0;0;1\n1;0;1\n2;0;1\n3;0;1\n4;0;1\n0;1;1\n0;2;1\n0;3;1\n0;9;1\n",
+        {"unit": "um"},
+        "most of the grid empty",
+    ),
+    "hardly a height": ("0.00;1\n1.00;---\n3.00;---\n4.00;---\n", {"unit": "um"}, "fewer than two points have a height"),
+    "two spacings of a line": (
+        "1\n2\n3\n",
+        {"unit": "um", "spacing": "1 um x 2 um"},
+        "give one distance, or one for each axis",
+    ),
     "two points": ("1;2\n2;3\n", {"unit": "um"}, "2 points are too few"),
     "binary": ("1\0;2\n", {"unit": "um"}, "is not text"),
     "channel": ("1;2\n", {"channel": "Height"}, "plain text without channels"),
