@@ -15,7 +15,8 @@ from stribeck._types import Array, Flags, Indices
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import is_named, rows_listed
 from stribeck.files.columns import has_dimension, si_factor
-from stribeck.files.text_table import TextTable, read_table
+from stribeck.files.table_reading import read_table
+from stribeck.files.text_table import TextTable
 from stribeck.fits.table.columns import columns_of, has_column, known_name, with_errors_named
 from stribeck.fits.table.correlated import FEWEST, errors_of_means
 from stribeck.fits.table.rig import MADE_FRICTION, column_of, measured, prepared, temperatures

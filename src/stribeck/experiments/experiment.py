@@ -15,7 +15,8 @@ from stribeck.cases.case import Case
 from stribeck.cases.reading import check_case
 from stribeck.files.cells import split_header
 from stribeck.files.results import Exported, Labelled
-from stribeck.files.text_table import TextTable, read_table
+from stribeck.files.table_reading import read_table
+from stribeck.files.text_table import TextTable
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import PathLike, path_of
 from stribeck.quantities.formats import format_percent

@@ -15,7 +15,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction_rules import RULES
 from stribeck.explorer.curves import hersey_scale
 from stribeck.explorer.inputs.inputs import Abscissa, Inputs
-from stribeck.files.text_table import read_table
+from stribeck.files.table_reading import read_table
 from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.reading import read_measurements

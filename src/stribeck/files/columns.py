@@ -12,7 +12,8 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.files.cells import is_named, number_of, split_header
-from stribeck.files.text_table import TextTable, read_table
+from stribeck.files.table_reading import read_table
+from stribeck.files.text_table import TextTable
 from stribeck.files.writing import PathLike, path_of
 from stribeck.quantities.units import InputError, show, to_si
 

@@ -17,7 +17,8 @@ from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import rows_listed, split_header
 from stribeck.files.datasets import Column
 from stribeck.files.results import Exported, Labelled
-from stribeck.files.text_table import TextTable, read_table
+from stribeck.files.table_reading import read_table
+from stribeck.files.text_table import TextTable
 from stribeck.files.writing import PathLike, path_of
 from stribeck.fits.table.columns import Abscissa, abscissa_of, columns_of, has_column, known_name, with_errors_named
 from stribeck.fits.table.repeats import Row, average_repeats

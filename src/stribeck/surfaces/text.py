@@ -17,7 +17,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.files.cells import NUMBER_WITH_POINT, is_missing
-from stribeck.files.text_table import read_numbers
+from stribeck.files.table_reading import read_numbers
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.text_header import Header, header_of, unit_of
 from stribeck.surfaces.topography import MIN_POINTS, Topography
