@@ -91,7 +91,7 @@ def fingerprint(figure: PaperFigure) -> str:
     """Return what changes when the numbers of a figure may change."""
     package = Path(__file__).parents[1]
     found = hashlib.sha256(version("stribeck").encode())
-    for path in sorted(package.rglob("*.py")):
+    for path in sorted(path for ending in ("py", "toml") for path in package.rglob(f"*.{ending}")):
         name = path.relative_to(package).as_posix()
         of_another = name.startswith("figures/article/figure_") and path.stem != figure.stem
         if not name.startswith(SOURCES_WITHOUT_NUMBERS) and not of_another:

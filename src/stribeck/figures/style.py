@@ -8,11 +8,11 @@ from __future__ import annotations
 import math
 import re
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, TINTS, Axes, Figure, blank_figure
+from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, TINTS, Axes, Figure, blank_figure, house_style
 
 if TYPE_CHECKING:
     from xarray import DataArray as DataArray
@@ -21,13 +21,19 @@ else:  # Annotations that the modules of the figures import
     DataArray = Dataset = Any
 
 # Names of other modules that the modules of the figures take from here.
-__all__ = ["CONTACT", "FLUID", "GREY", "INK", "MARK", "TINTS", "Axes", "DataArray", "Dataset", "Figure"]
+__all__ = ["CONTACT", "FLUID", "GREY", "INK", "MARK", "TINTS", "Axes", "DataArray", "Dataset", "Figure", "house_style"]
+
+Panels = dict[str, Axes]
 
 CYAN = "#56b4e9"
 GREEN = "#009e73"  # The fourth of the strong colours of Okabe and Ito, beside CONTACT, FLUID and MARK.
 
 DASHED: Any = (0, (5, 2.5))  # Dashes of lines that formulas give; states of the solver are full lines or dots.
 DOTTED: Any = (0, (1.2, 1.6))  # Dots of lines that formulas give.
+
+# How the files of the figures name them
+COLOURS = {"ink": INK, "grey": GREY, "fluid": FLUID, "contact": CONTACT, "mark": MARK, "green": GREEN, "cyan": CYAN}
+DASHES: dict[Any, Any] = {"dashed": DASHED, "dotted": DOTTED}
 
 FOOT_LINE_HEIGHT = 0.17  # Height of a line of the foot [inch].
 
@@ -51,28 +57,35 @@ def new_figure(data: Dataset, width: float, height: float) -> Figure:
     return figure
 
 
-def panels(figure: Figure, rows: int, columns: int, **options: Any) -> list[Axes]:
-    """Return the axes of a grid of panels, row by row, each in house style."""
-    grid = figure.add_gridspec(rows, columns, **options)
-    found = [figure.add_subplot(grid[i, j]) for i in range(rows) for j in range(columns)]
-    for axes in found:
+def panels(figure: Figure, grid: Mapping[str, Any]) -> Panels:
+    """Return the axes of the panels by name, in the places of :meth:`~matplotlib.figure.Figure.subplot_mosaic`."""
+    found: Panels = figure.subplot_mosaic(**grid)
+    for axes in found.values():
         house_style(axes)
     return found
 
 
-def house_style(axes: Axes) -> None:
-    """Give axes the colours and sizes of the house."""
-    for side in axes.spines.values():
-        side.set(color=GREY, linewidth=0.8)
-    axes.tick_params(which="both", direction="in", top=True, right=True, colors=INK, labelsize=8.5)
-    axes.xaxis.label.set(color=INK, size=10)
-    axes.yaxis.label.set(color=INK, size=10)
-
-
-def panel(axes: Axes, which: str, text: str, legend: dict[str, Any] | None = None, **settings: Any) -> None:
-    """Give a panel its letter, what it shows, the settings of its axes, and a legend."""
+def finish(
+    axes: Axes,
+    name: str,
+    data: Dataset,
+    *,
+    text: str = "",
+    steps_of: str = "",
+    lines: Mapping[str, Mapping[str, Any]] | None = None,
+    unit: str | float = 1.0,
+    legend: Mapping[str, Any] | None = None,
+    **settings: Any,
+) -> None:
+    """Draw into a panel what its file names, over a unit or a variable, and give it title, settings of its axes and legend."""
+    unit_of: Any = data[unit] if isinstance(unit, str) else unit
+    if steps_of:  # The title of the legend says what the steps are
+        steps(axes, data[steps_of] / unit_of, named="title" in (legend or {}))
+    for variable, look in (lines or {}).items():
+        limit(axes, data[variable] / unit_of, **look)
     axes.set(**settings)
-    axes.set_title(f"({which}) {text}", loc="left", size=9.5, color=INK)
+    if text:  # Panels that the paper does not have are named by words
+        axes.set_title(f"({name if len(name) == 1 else '+'}) {text}", loc="left", size=9.5, color=INK)
     if legend is not None:
         small_legend(axes, **legend)
 
@@ -92,24 +105,19 @@ def inset(axes: Axes, bounds: tuple[float, float, float, float], title: str) -> 
     return found
 
 
-def steps(axes: Axes, rows: DataArray, lw: float = 1.4, by: DataArray | None = None) -> None:
+def steps(axes: Axes, rows: DataArray, lw: float = 1.4, by: DataArray | None = None, named: bool = True) -> None:
     """Draw a line for each step of the first dimension over the second, dark to light, labelled by its value."""
     x = rows[rows.dims[1]]
     values = rows[rows.dims[0]] if by is None else by
     for colour, row, value in zip(sequence(len(values)), rows.values, values.values, strict=True):
-        axes.plot(x, row, color=colour, lw=lw, label=power(value))
+        axes.plot(x, row, color=colour, lw=lw, label=power(value) if named else None)
     axes.set_xlim(float(x[0]), float(x[-1]))
 
 
-def limit(axes: Axes, values: DataArray, label: str, **look: Any) -> None:
+def limit(axes: Axes, values: DataArray, *, color: str = "ink", ls: Any = "dashed", **look: Any) -> None:
     """Draw what a formula gives in a limit, over its coordinate."""
-    axes.plot(values[values.dims[0]], values, **{"color": INK, "lw": 1.2, "ls": DASHED, "label": label} | look)
-
-
-def lines(axes: Axes, data: Dataset, table: dict[str, tuple[str, str, Any]], **look: Any) -> None:
-    """Draw variables of a dataset over their coordinate, each with its label, colour and dashes."""
-    for name, (label, colour, dashes) in table.items():
-        limit(axes, data[name], **{"color": colour, "ls": dashes, "lw": 1.5, "label": label} | look)
+    look = {"color": COLOURS.get(color, color), "ls": DASHES.get(ls, ls), "lw": 1.2} | look
+    axes.plot(values[values.dims[0]], values, **look)
 
 
 def sequence(count: int) -> list[str]:
@@ -140,9 +148,15 @@ def slope(axes: Axes, x: float, y: float, exponent: float, text: str, decades: f
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a picture; the same figure gives the same bytes."""
+    """Write a picture; the same data give the same bytes."""
     from matplotlib import rc_context
 
+    # The last digits of a layout differ from one process to the next, and with them the names of clipping paths in an SVG.
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    for axes in figure.axes:
+        x, y, width, height = (round(each, 9) for each in axes.get_position().bounds)
+        axes.set_position((x, y, width, height))
     metadata: dict[str, Any] = {"Date": None} if path.suffix == ".svg" else {"Software": None}
     with rc_context({"svg.hashsalt": "stribeck"}):
         figure.savefig(path, metadata=metadata)

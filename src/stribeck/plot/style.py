@@ -133,11 +133,7 @@ def new_figure(
     )
     axes = [figure.add_subplot(grid[i, j]) for i in range(rows) for j in range(columns)]
     for ax in axes:
-        for side in ax.spines.values():
-            side.set(color=GREY, linewidth=0.8)
-        ax.tick_params(which="both", direction="in", top=True, right=True, colors=INK, labelsize=9)
-        ax.xaxis.label.set(color=INK, size=10.5)
-        ax.yaxis.label.set(color=INK, size=10.5)
+        house_style(ax, 10.5)
     headline = textwrap.shorten(title, int(7.3 * width), placeholder=" …")
     place = 0.8 / width, 1 - 0.16 / height
     figure.text(*place, headline, size=14, weight="bold", color=INK, va="top", parse_math=False)
@@ -152,6 +148,15 @@ def new_figure(
             parse_math=colour == GREY,
         )
     return figure, axes
+
+
+def house_style(axes: Axes, size: float = 10.0) -> None:
+    """Give axes the colours of the house, and labels of a size."""
+    for side in axes.spines.values():
+        side.set(color=GREY, linewidth=0.8)
+    axes.tick_params(which="both", direction="in", top=True, right=True, colors=INK, labelsize=size - 1.5)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.label.set(color=INK, size=size)
 
 
 def figure_of(axes: Axes) -> Figure:
