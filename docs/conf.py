@@ -231,7 +231,8 @@ def figure_entry(path):
     place = f"generated/figures/{path.stem}"
     return (
         f"\n## Figure {figure.name}: {figure.said['title']}\n\n![Figure {figure.name}]({place}.png)\n\n"
-        f"*Claimed in [BP]:* {figure.said['claim']}\n\n*Found:* {finding}\n\n[Data as NetCDF]({place}.nc) · [SVG]({place}.svg)\n"
+        f"*Claimed in [BP]:* {figure.said['claim']}\n\n*Found:* {finding}\n\n"
+        f"[Data as NetCDF]({place}.nc) · [SVG]({place}.svg)\n"
     )
 
 
