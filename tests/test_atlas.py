@@ -318,9 +318,20 @@ def test_a_curve_read_off_it_is_the_solved_one():
     assert [mark.name for mark in read.transitions] == [mark.name for mark in solved.transitions]
     for mine, theirs in zip(read.transitions, solved.transitions, strict=True):
         assert mine.value == pytest.approx(theirs.value, rel=1e-3)
+        assert abs(math.log(mine.value / theirs.value)) <= mine.error + theirs.error
         assert mine.friction == pytest.approx(theirs.friction, rel=1e-4)
+    between = np.sqrt(read.values[1:] * read.values[:-1])
+    one, two = read.at(between), solved.at(between)
+    assert (np.abs(one.friction - two.friction) <= one.friction.error + two.friction.error).all()
+    place = float(between[5])
+    assert read.at(place).central_gap == pytest.approx(solved.at(place).central_gap, rel=read.error_estimate)
+    assert read.sampled(7).transitions[0].value == pytest.approx(read.transitions[0].value, rel=1e-6)
+    assert read.friction(boundary_friction=0.35).asperities == pytest.approx(0.5 * read.friction.asperities)
+    assert read.to_dataset()["friction"].values == pytest.approx(solved.to_dataset()["friction"].values, rel=1e-4)
     over_load, solved = (sb.stribeck_curve(TRUE, load=(5, 100), points=4, method=each) for each in ("atlas", "solver"))
     assert np.allclose(over_load.friction, solved.friction, rtol=1e-4)
+    with pytest.raises(sb.InputError, match="outside the curve"):
+        read.at(2 * read.values[-1])
     with pytest.raises(sb.InputError, match="the atlas has contact_load_share"):
         read.observable("error_estimate")
     with pytest.raises(sb.InputError, match="must be 'solver' or 'atlas'"):

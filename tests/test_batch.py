@@ -94,14 +94,6 @@ def test_one_state_is_an_array_of_none():
     assert found.ok
 
 
-def test_a_state_that_rounding_bounds_is_kept_with_its_outcome():
-    found = sb.solve_batch(sb.Groups(np.array([1e-9, 1e6]), 0.1, 0.0), rtol=1e-11)
-    assert found.outcome.tolist() == [Outcome.ROUNDING, Outcome.CONVERGED]
-    assert found.ok.tolist() == [False, True]
-    assert found.error_estimate[0] > 1e-11 >= found.error_estimate[1]
-    assert np.isfinite(found.central_gap).all()
-
-
 def test_an_error_of_the_program_is_no_outcome_of_a_state():
     broken = []
 

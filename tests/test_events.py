@@ -52,22 +52,3 @@ def test_many_zeros_are_located_at_once_between_their_last_ends(subtests):
             assert (np.abs(found - zeros) <= apart).all() and apart.max() <= 4 / 3**rounds * (1 + 1e-12)
             assert slopes == pytest.approx(1.0, abs=2 * apart.max()) if rounds > 1 else (slopes > 0).all()
             assert rounds == 1 or np.abs(found - zeros).max() < 1e-9
-
-
-def test_a_curve_off_the_atlas_offers_what_a_solved_one_does():
-    contact = sb.load_case("examples/pdms_cylinder.toml").contact
-    read, solved = (
-        sb.stribeck_curve(contact, speed=("0.1 mm/s", "0.1 m/s"), points=5, method=each) for each in ("atlas", "solver")
-    )
-    for mark, other in zip(read.transitions, solved.transitions, strict=True):
-        assert mark.name == other.name and abs(math.log(mark.value / other.value)) <= mark.error + other.error < 1e-3
-    speeds = np.geomspace(2e-4, 5e-2, 5)
-    one, two = read.at(speeds), solved.at(speeds)
-    assert (np.abs(one.friction - two.friction) <= one.friction.error + two.friction.error).all()
-    assert read.at("1 mm/s").central_gap == pytest.approx(solved.at("1 mm/s").central_gap, rel=read.error_estimate)
-    assert read.sampled(7).transitions[0].value == pytest.approx(read.transitions[0].value, rel=1e-6)
-    assert read.friction(boundary_friction=0.35).asperities == pytest.approx(0.5 * read.friction.asperities)
-    dataset = read.to_dataset()
-    assert dataset["friction"].values == pytest.approx(solved.to_dataset()["friction"].values, rel=1e-4)
-    with pytest.raises(sb.InputError, match="outside the curve"):
-        read.at("1 m/s")

@@ -341,7 +341,8 @@ def kill_and_resume(tmp_path, text, total, kill_at, workers):
     before, found = kept(store), sb.open_sweep(store)
     assert kill_at <= len(before) == found.finished < total
     again = sb.sweep(file, store)
-    assert "was taken over" in again.note
+    told = f"(process {process.pid} on this machine) ended without releasing it; it was taken over."
+    assert again.note == f"An earlier sweep on this store {told}" and sb.sweep(file, store).note == ""
     assert (again.finished, again.computed) == (total, total - found.finished)
     after = kept(store)
     assert {state: after[state] for state in before} == before

@@ -5,7 +5,6 @@ import os
 import re
 import shutil
 import sqlite3
-import subprocess
 import sys
 from contextlib import closing
 
@@ -302,25 +301,6 @@ def test_a_second_sweep_in_the_same_process_is_refused(tmp_path):
 
     assert sb.sweep(file, tmp_path / "store", on_progress=second).finished == 12
     assert len(said) == 12 and all(f"is in use by process {os.getpid()} on this machine; wait for it" in each for each in said)
-
-
-TAKEN = """
-import os, signal, sys
-import stribeck as sb
-sb.sweep(sys.argv[1], sys.argv[2], on_progress=lambda progress: os.kill(os.getpid(), signal.SIGKILL))
-"""
-
-
-def test_the_store_of_a_dead_process_is_taken_over_with_a_note(tmp_path):
-    file, store = write(tmp_path, SMALL), tmp_path / "store"
-    with subprocess.Popen([sys.executable, "-c", TAKEN, file, store]) as process:
-        process.wait()
-    assert len(kept(store)) == 1  # the state that was just told, and nothing half
-    found = sb.sweep(file, store)
-    assert found.computed == 11
-    told = f"(process {process.pid} on this machine) ended without releasing it; it was taken over."
-    assert found.note == f"An earlier sweep on this store {told}"
-    assert sb.sweep(file, store).note == ""
 
 
 def test_the_store_is_free_after_success_failure_and_interruption(tmp_path):
