@@ -394,3 +394,13 @@ def test_usual_errors_stand_in_for_those_that_nobody_gives(tmp_path, capsys):
         sb.load_case(path)
     path.write_text(case_text({}))
     assert 'uncertainty = "typical" at the top' in call(capsys, "regimes", path).out
+
+
+def test_films_at_rest_have_the_errors_of_their_inputs_and_friction_that_of_asperities():
+    contact = TRUE.replace(speed=0.0)
+    found = sb.propagate(contact, {"roughness": 0.05, "boundary_friction": 0.1}, transitions=False)
+    ends = [contact.replace(roughness=contact.roughness * math.exp(end)) for end in (-0.05, 0.05)]
+    low, high = (sb.solve(each).central_gap * each.hertz.indentation for each in ends)
+    assert found["central_gap"].interval_68 == pytest.approx((low, high), rel=0.02)
+    assert found["friction"].interval_68 == pytest.approx((0.7 * math.exp(-0.1), 0.7 * math.exp(0.1)), rel=0.02)
+    assert found.to_si()["friction"] == pytest.approx(TRUE.boundary_friction)

@@ -148,3 +148,20 @@ def test_models_that_nobody_knows_are_refused():
         sb.compare(data, TRUE, models="solid")
     with pytest.raises(sb.InputError, match="laws and models are both given"):
         sb.compare(data, TRUE, models="fluid", laws={})
+
+
+def test_a_model_that_cannot_be_fitted_is_named_with_its_reason_beside_those_that_can():
+    speeds, friction = exact(TRUE, low=3e-3, rows=6)
+    models = {"plain": {}, "own": {"free": ("relaxation_time",)}}
+    found = sb.compare(measured(speeds, friction), TRUE, models=models, free=("boundary_friction",))
+    assert found.sentence == "Only plain could be fitted." and "relaxation_time" in found.failed["own"]
+    with pytest.raises(sb.InputError, match="nothing could be fitted: .*relaxation_time"):
+        sb.compare(measured(speeds, friction), TRUE, models={"own": models["own"]}, free=("boundary_friction",))
+
+
+def test_data_with_known_errors_count_no_noise_among_the_inputs():
+    speeds, friction = exact(TRUE, low=3e-3, rows=8)
+    friction = friction * np.exp(0.01 * np.random.default_rng(3).standard_normal(8))
+    found = sb.compare(measured(speeds, friction, 0.01 * friction), TRUE, models={"plain": {}}, free=("boundary_friction",))
+    [each] = found.candidates
+    assert each.aicc == pytest.approx(each.fit.quality.chi_squared + 2 + 4 / 6)

@@ -45,6 +45,7 @@ INPUTS = {
         "force": '"0.6 N +- 5 %"',
         "width": '"20 mm"',
     },
+    "one body": {"modulus": None, "youngs_modulus": '"2 MPa"', "poisson_ratio": '"0.4 +- 10 %"'},
     "two bodies": {
         "modulus": None,
         "youngs_modulus": '"2 MPa +- 10 %"',
@@ -101,7 +102,9 @@ def test_a_fitted_case_of_every_law_has_the_fitted_curve(capsys, tmp_path, name,
     check_round_trip(capsys, tmp_path, *CASES[name], free)
 
 
-@pytest.mark.parametrize(("name", "free"), [("data sheet", ["load", "viscosity"]), ("two bodies", ["modulus"])])
+@pytest.mark.parametrize(
+    ("name", "free"), [("data sheet", ["load", "viscosity"]), ("one body", ["modulus"]), ("two bodies", ["modulus"])]
+)
 def test_a_fitted_case_has_the_fitted_curve_whatever_the_data_sheet_gave(capsys, tmp_path, name, free):
     check_round_trip(capsys, tmp_path, INPUTS[name], {}, free)
 

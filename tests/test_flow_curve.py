@@ -117,3 +117,13 @@ def test_a_file_of_a_rheometer_is_the_fluid_of_a_case(tmp_path, capsys):
     case.write_text(CASE)
     with pytest.raises(sb.InputError, match="has no unit"):
         sb.load_case(case)
+
+
+def test_a_law_shows_its_numbers_with_their_errors_and_is_the_fluid_of_a_contact():
+    found = sb.fluids.flow_curve(RATE, measured("carreau"))
+    rows = [line.split() for line in str(found).splitlines()]
+    assert ["viscosity", f"{found.viscosity:.3g}", "Pa*s", f"{1e3 * found.errors['viscosity']:.3g}", "mPa*s"] in rows
+    exponent, error = f"{found.law.exponent:.3g}", f"{found.errors['exponent']:.3g}"
+    assert ["exponent", "of", "shear", "thinning", exponent, error] in rows
+    assert f", power-law {100 * found.misfits['power-law']:.2g} %, " in str(found)
+    assert found.inputs == {"viscosity": found.viscosity, "fluid": found.fluid} and found.fluid.rheology == found.law

@@ -1,5 +1,6 @@
 """Fits over several files: what differs between them is read from lines, names and the case, and what each has for itself."""
 
+import dataclasses
 import json
 
 import numpy as np
@@ -145,3 +146,13 @@ def test_a_file_counts_once_and_a_copy_of_it_is_named(tmp_path):
     copy.write_text(plain.read_text())
     both = sb.read_measurements([plain, copy])
     assert len(both) == 18 and any("copy holds the same rows as plain" in note for note in both.notes)
+
+
+def test_files_without_errors_take_those_of_the_case_beside_files_with_them():
+    with_errors, without = (measured([1e-3, 1e-2], [0.5, 0.3], error) for error in (0.02, None))
+    settings = sb.load_case("examples/pdms_cylinder.toml").fit
+    with pytest.raises(sb.InputError, match="has no errors of friction, and .* has; give relative_error or absolute_error"):
+        sb.read_measurements([with_errors, without], settings)
+    both = sb.read_measurements([with_errors, without], dataclasses.replace(settings, relative_error=0.1, absolute_error=0.04))
+    assert both.error == pytest.approx([0.02, 0.02, np.hypot(0.05, 0.04), np.hypot(0.03, 0.04)])
+    assert both.to_dataset()["error"].values == pytest.approx(both.error)

@@ -121,3 +121,22 @@ def test_impossible_curves_are_refused(subtests, tmp_path):
         sb.solids.from_master_curve(write(tmp_path / "c.csv", "frequency [rpm];E' [MPa];E'' [MPa]"))
     with pytest.raises(sb.InputError, match="poisson_ratio"):
         sb.solids.fit_prony(OMEGA, storage, loss, poisson_ratio=0.7)
+
+
+def test_a_series_shows_its_terms_and_its_dataset_has_the_measured_values_beside_it():
+    found = sb.solids.fit_prony(OMEGA, *moduli())
+    text = str(found)
+    for said in ("2 terms through 31 frequencies from 1 to 1e+05 rad/s", "1.5 MPa; effective 2 MPa with Poisson's ratio 0.5"):
+        assert said in text
+    rows = [line.split() for line in text.splitlines()]
+    assert ["100", "µs", "3", "MPa", "2"] in rows and ["10", "ms", "1.5", "MPa", "1"] in rows
+    kept = found.to_dataset()
+    for name, values in zip(("storage", "loss"), moduli(), strict=True):
+        assert kept[name].values == pytest.approx(values, rel=1e-12) and kept[f"fitted_{name}"].values == pytest.approx(
+            values, rel=1e-6
+        )
+    assert kept["frequency"].values == pytest.approx(OMEGA) and float(kept["relaxed_modulus"]) == found.relaxed_modulus
+    assert found.inputs == {"modulus": found.modulus, "solid": found.solid}
+    rng = np.random.default_rng(2)
+    scattered = [each * np.exp(rng.standard_normal(8)) for each in moduli(OMEGA[::4])]
+    assert any("No series follows these values within" in note for note in sb.solids.fit_prony(OMEGA[::4], *scattered).notes)

@@ -269,3 +269,27 @@ def test_a_stroke_is_a_dataset_and_a_picture(tmp_path):
     assert loop.get_xlabel() == "position (mm)" and 4 < loop.get_xlim()[1] < 5  # of 8 mm
     assert films.get_ylabel() == "film (nm)" and films.get_ylim()[1] > 100
     assert found == dataclasses.replace(found)
+
+
+def test_each_motion_moves_at_its_speed_and_has_its_instants_where_the_film_changes_fastest(subtests):
+    for motion, distance in (
+        (sb.motions.Stop(start=0.1, braking_time=0.01, rest=1.0), 0.5e-3),
+        (sb.motions.Ramp(start=0.1, end=0.3, duration=0.05), 0.01),
+        (sb.motions.Sine(stroke=0.02, frequency=2.0), 0.0),
+        (sb.motions.Table([0.0, 0.01, 0.03], [0.0, 0.1, 0.05]), 2e-3),
+    ):
+        with subtests.test(motion=type(motion).__name__):
+            times = motion.times(200)
+            assert times[0] == 0 and times[-1] == motion.duration and np.all(np.diff(times) > 0) and times.size == 201
+            moved = np.concatenate(
+                [[0.0], np.cumsum(0.5 * np.diff(times) * (motion.speed(times[1:]) + motion.speed(times[:-1])))]
+            )
+            path = motion.position(times) - motion.position(times[:1])
+            assert np.allclose(path, moved, rtol=0, atol=2e-4 * np.abs(path).max())
+            assert path[-1] == pytest.approx(distance, rel=1e-3, abs=1e-6)
+    stop = sb.motions.Stop(start=0.1, braking_time=0.01, rest=1.0)
+    assert stop.duration == 1.01 and not stop.repeats
+    assert stop.speed(np.array([0.0, 0.0025, 0.01, 0.5])) == pytest.approx([0.1, 0.075, 0.0, 0.0], abs=1e-15)
+    steps = np.diff(stop.times(200))
+    assert np.sum(stop.times(200) <= 0.01 * (1 + 1e-12)) == 101 and np.all(np.diff(steps[101:]) > 0)
+    assert steps[100] < 0.1 * steps[99]
