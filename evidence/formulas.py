@@ -199,7 +199,7 @@ INTERVALS: dict[str, Callable[[Groups], tuple[float, float]]] = {
     "hydrodynamic": lambda g: (0.0, 4 * float(g.speed) ** (1 / 3) / 24 ** (1 / 6)),
     "point.rest.edge": lambda g: (1.0, LAYER_WIDTHS * (math.pi / 4 * float(g.relative_roughness)) ** (2 / 3)),
     "point.film": lambda g: (0.0, 0.8),
-    "point.rigid": lambda g: (0.0, 3 * float(rigid.gap_of(g)) ** 0.5),
+    "point.rigid": lambda g: (0.0, 3 * float(rigid.minimum_gap.function(g)) ** 0.5),
 }
 
 

@@ -14,7 +14,6 @@ from functools import partial
 
 import numpy as np
 
-from stribeck._types import Array
 from stribeck.asymptotics.constants import BALL_FILM_CONSTANT, FILM_CONSTANT, MINIMUM_CONSTANT
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.point.rigid import GAP_COEFFICIENT
@@ -101,7 +100,8 @@ def gap_slow(groups: Groups, x: Value) -> Value:
     Compared with the solver up to 0.8 of the radius; inlet and outlet are :math:`\lambda^{2/5}` wide.
     """
     x = np.where(np.abs(x) < 1, x, np.nan)
-    q = _flux_film(groups.speed, np.arcsin(x) + math.pi / 2)
+    leaked = 2 / math.pi * LEAKAGE_COEFFICIENT * np.power(groups.speed, 0.2) * (np.arcsin(x) + math.pi / 2)
+    q = BALL_FILM_CONSTANT * np.power(groups.speed, 0.6) * (1 + leaked) ** -0.5
     slope = np.divide(q**3, groups.speed, where=np.greater(groups.speed, 0), out=np.zeros(np.broadcast(q, groups.speed).shape))
     return np.asarray(q - slope * x / np.sqrt((1 - x) * (1 + x)))[()]
 
@@ -138,9 +138,3 @@ def minimum_gap(groups: Groups) -> Value:
     v = np.power(groups.speed, 0.25)
     found: Value = limit * np.power(groups.speed, 0.75) / (1 + v * (one + two * v))
     return found
-
-
-def _flux_film(speed: Value, angle: Array) -> Array:
-    """Return the film of the flux that is left in the middle after the leakage over an angle arcsin x + pi/2."""
-    film = BALL_FILM_CONSTANT * np.power(speed, 0.6)
-    return np.asarray(film * (1 + 2 / math.pi * LEAKAGE_COEFFICIENT * np.power(speed, 0.2) * angle) ** -0.5)

@@ -10,7 +10,6 @@ from functools import partial
 
 import numpy as np
 
-from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.contacts.groups import Groups
 from stribeck.solids import hertz
@@ -53,15 +52,11 @@ def gap(groups: Groups, x: Value) -> Value:
     Zero in the contact.  The error is relative to the largest gap within two radii; it is of order kappa, with logarithms, or
     lambda**(3/5).
     """
-    return dry_gap(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
-
-
-def dry_gap(r: Array) -> Array:
-    """Return the gap around the dry contact at distances from the middle, zero inside."""
-    beyond = np.maximum(np.abs(r), 1.0)
+    beyond = np.maximum(np.abs(np.asarray(x, dtype=float)), 1.0)
     root = np.sqrt((beyond - 1) * (beyond + 1))
     # arctan of the root is arccos(1/r) without loss of digits near the edge.
-    return np.asarray((root * 1.0 + (beyond**2 - 2) * np.arctan(root)) / math.pi)
+    found: Value = (root + (beyond**2 - 2) * np.arctan(root)) / math.pi + np.zeros(groups.shape)
+    return found
 
 
 @_dry(worst=0.0045, source="Hertz (1882)")

@@ -23,12 +23,6 @@ LIFT_COEFFICIENT = 27 * math.pi**2 / (6400 * math.sqrt(2))  # Load of the fluid 
 GAP_COEFFICIENT = (3 * LIFT_COEFFICIENT / (2 * math.pi)) ** 0.4
 
 
-def gap_of(groups: Groups) -> Value:
-    """Return the gap under the rigid ball."""
-    found: Value = GAP_COEFFICIENT * np.power(groups.speed, 0.8)
-    return found
-
-
 _rigid = partial(
     formula,
     uses=("speed",),
@@ -48,7 +42,8 @@ def minimum_gap(groups: Groups) -> Value:
     In other words :math:`F_N E^* h_0^{5/2} = \tfrac{243 \pi^3}{3200 \sqrt2} \, \eta^2 U^2 R^{5/2}`, with 1.6649.  The
     gap in the middle is larger by the deflection under the load, 3.5 % at speed 100.
     """
-    return gap_of(groups)
+    found: Value = GAP_COEFFICIENT * np.power(groups.speed, 0.8)
+    return found
 
 
 @_rigid(limits=(Limit("speed", 3e2),), worst=0.26, error_order=0.6)
@@ -65,5 +60,5 @@ def fluid_pressure(groups: Groups, x: Value) -> Value:
     Far away it is :math:`-\tfrac45 \lambda x/r^4`.
     """
     x = np.asarray(x, dtype=float)
-    gap = gap_of(groups) + np.square(x) / 2
+    gap = minimum_gap.function(groups) + np.square(x) / 2
     return np.asarray(-groups.speed / 5 / gap * (x / gap))[()]

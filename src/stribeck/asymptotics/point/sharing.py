@@ -94,7 +94,7 @@ def _log_speed(odds: Array, F: Array, kappa: Array) -> tuple[Array, Array]:
     wedge = wedge + at_rest * np.exp(-(w3 + w4 * A_0 + w5 * np.sqrt(kappa)) * more)
     log_y, log_H = np.log(kappa * H), np.log(H)
     q = np.clip(q0 + q1 * log_y + q2 * log_H, 0.0, 0.3)
-    film = _speed_of_film(np.log(kappa * _horseshoe(H, q)))
+    film = np.interp(np.log(kappa * _horseshoe(H, q)), *_film_table())
     film = film + (f0 + f1 * log_y + f2 * log_H) * (1 - fluid**f3)
     m = s1 + s2 * H / (1 + H)
     return np.asarray(-np.logaddexp(-m * wedge, -m * film) / m), np.asarray(film)
@@ -126,11 +126,6 @@ def _across() -> tuple[Array, Array]:
 
 @cache
 def _film_table() -> tuple[Array, Array]:
+    """Return logarithms of the gap in the middle of a smooth ball, and of its speeds."""
     speeds = np.linspace(*LOG_SPEED_TABLE)
     return np.asarray(np.log(film_of(np.exp(speeds)))), speeds
-
-
-def _speed_of_film(log_gap: Array) -> Array:
-    """Return the logarithm of the speed at which the smooth ball has a gap in the middle."""
-    gaps, speeds = _film_table()
-    return np.asarray(np.interp(log_gap, gaps, speeds))
