@@ -47,8 +47,8 @@ def rows():
             f"{body.WIDTH_RATIO_OUTSIDE:g}", "fluids.md#profiles",
         ),
         "adhesion": (
-            r"pull-off force, $\tfrac32 \pi w R$ (ball) or $\tfrac34 (4 \pi E^* R w^2)^{1/3}$, over load; `work_of_adhesion` $w$, "
-            f"asked for below $E^*$ = {gel}", f"{body.PULL_OFF_FINE:g}", f"{body.PULL_OFF_OUTSIDE:g}",
+            r"pull-off force, $\tfrac32 \pi w R$ (ball) or $\tfrac34 (4 \pi E^* R w^2)^{1/3}$, over load; "
+            f"`work_of_adhesion` $w$, asked for below $E^*$ = {gel}", f"{body.PULL_OFF_FINE:g}", f"{body.PULL_OFF_OUTSIDE:g}",
             "when_not_to_use.md#gels-and-tissue",
         ),
         "pores": (
