@@ -9,7 +9,9 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.results import Card, Told
+from stribeck.quantities.units import DIMENSIONS, listed
 
 Verdict = Literal["fine", "doubtful", "outside"]
 
@@ -223,9 +225,6 @@ def check_against_limits(
 
 def number_text(value: float, unit: str) -> str:
     """Return a number with three digits, and its unit with a fitting prefix."""
-    from stribeck.quantities.formats import format_si
-    from stribeck.quantities.units import DIMENSIONS
-
     kind = next((name for name, each in DIMENSIONS.items() if unit and each.unit == unit), None)
     if kind is None or not math.isfinite(value):
         return f"{value:.3g} {unit}".rstrip()
@@ -238,5 +237,4 @@ def _without_numbers(text: str) -> str:
 
 
 def _names(checks: Sequence[Check]) -> str:
-    names = [each.name for each in checks]
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+    return listed(each.name for each in checks)

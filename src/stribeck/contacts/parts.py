@@ -22,7 +22,7 @@ from stribeck.profiles.shapes import Shape
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.registry import laws_of
 from stribeck.quantities.schema import Input, numbers_of
-from stribeck.quantities.units import InputError, checked_word, show
+from stribeck.quantities.units import InputError, checked_word, listed, show
 from stribeck.solids.half_plane import HalfPlane, as_solid
 from stribeck.solids.solid import Solid
 
@@ -207,8 +207,7 @@ def _numbers() -> Iterator[Input]:
             for row in numbers_of(law).values():
                 found.setdefault(row.name, (row, []))[1].append(name)
         for row, names in found.values():
-            *most, last = map(repr, names)
-            of = f"[{kind.table}] with {kind.key} = {' or '.join(filter(None, [', '.join(most), last]))}"
+            of = f"[{kind.table}] with {kind.key} = {listed(map(repr, names), 'or')}"
             yield replace(row, table=kind.table, of=of)
     yield from numbers_of(Parts).values()
 

@@ -135,7 +135,7 @@ def checked_word(name: str, value: Any, words: Iterable[str], about: str = "") -
     if isinstance(value, str) and value in known:
         return value
     shown = [repr(str(each)) for each in known]
-    allowed = f"one of {', '.join(shown)}" if len(shown) > 3 else " or ".join(filter(None, (", ".join(shown[:-1]), shown[-1])))
+    allowed = f"one of {', '.join(shown)}" if len(shown) > 3 else listed(shown, "or")
     raise InputError(f"{name} = {show(value)} must be {allowed}{about}.")
 
 
@@ -152,6 +152,12 @@ def read_number(name: str, text: str) -> float:
         return float(text)
     except ValueError:
         raise InputError(f"{name} = {show(text)} is not a number; write it as 0.001 or 1e-3.") from None
+
+
+def listed(words: Iterable[str], last: str = "and") -> str:
+    """Return words as a sentence lists them: one, two and three."""
+    *most, end = words
+    return f"{', '.join(most)} {last} {end}" if most else end
 
 
 def show(value: Any) -> str:

@@ -11,7 +11,7 @@ from stribeck.contacts.typical_errors import follows_surface
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.quantities.formats import format_percent, format_share, format_si
 from stribeck.quantities.results import Card, Told
-from stribeck.quantities.units import DIMENSIONS
+from stribeck.quantities.units import DIMENSIONS, listed
 
 __all__ = ["Spread", "Uncertainty"]
 
@@ -100,7 +100,7 @@ class Uncertainty(Exported, Told):
     def probability_sentence(self) -> str:
         """The same as a sentence, with the inputs whose errors it counts."""
         rows = self.contact.INPUTS.rows
-        counted = f" by the errors of {_listed([rows[name].label for name in self.errors])}" if self.errors else ""
+        counted = f" by the errors of {listed([rows[name].label for name in self.errors])}" if self.errors else ""
         return f"Probability of each regime{counted}: {self.probabilities}."
 
     def to_dict(self) -> dict[str, Any]:
@@ -156,9 +156,5 @@ def exact_inputs(contact: Contact, errors: Collection[str]) -> str:
         for name, row in rows.items()
         if name not in errors and getattr(contact, name, None) and not (name == "beta" and follows_surface(contact, errors))
     ]
-    counted = f"Intervals count the errors of {_listed(known)}"
-    return f"{counted}; {_listed(exact)} count as exact." if exact else f"{counted}."
-
-
-def _listed(names: list[str]) -> str:
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+    counted = f"Intervals count the errors of {listed(known)}"
+    return f"{counted}; {listed(exact)} count as exact." if exact else f"{counted}."
