@@ -128,11 +128,6 @@ def test_a_case_file_that_is_no_ball_is_refused_with_a_sentence(subtests, tmp_pa
         (CASE.format(load="30 N/m"), r"\[contact\] load = '30 N/m' is a load per unit length; .* that of a cylinder"),
         (CASE.format(load="1.3 N").replace('"point"', '"line"'), "load = '1.3 N' is a force; expected a load per unit length"),
         (CASE.format(load="1.3 N").replace('"point"', '"ball"'), "geometry = 'ball' must be 'line' or 'point'"),
-        (
-            CASE.format(load="1.3 N").replace('load = "1.3 N"', ""),
-            r"load is missing; add a force, for example load = \"1.3 N\"",
-        ),
-        (CASE.format(load="1.3 N") + 'wetted_radius = "1 mm"', "lies inside the contact"),
     ]:
         with subtests.test(text=text, sentence=sentence):
             tmp_path = tmp_path_factory.mktemp("case")
