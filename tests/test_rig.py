@@ -1,8 +1,9 @@
-"""Files as test rigs write them: forces, mean speeds, repeats, run-in, steps, spreadsheets.
+"""Files as test rigs write them: forces, mean speeds, ratios, units, repeats, run-in, steps, spreadsheets.
 
 The layouts are made from public descriptions of ball-on-disc (mini traction machine) and pin-on-disc exports.
 """
 
+import functools
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -21,12 +22,17 @@ FRICTIONS = (0.5, 0.25, 0.0625, 0.125)
 
 @pytest.fixture
 def read(tmp_path):
-    def reader(text, name="rig.txt", geometry="line", **table):
-        path = tmp_path / name
+    def reader(text, geometry="line", **table):
+        path = tmp_path / "rig.txt"
         path.write_text(text)
         return sb.read_measurements(path, fit_settings(table, geometry))
 
     return reader
+
+
+@pytest.fixture
+def read_ball(read):
+    return functools.partial(read, geometry="point")
 
 
 def ball_on_disc(steps=1, comma=False):
@@ -232,3 +238,93 @@ def test_several_forces_on_a_cylinder_name_its_curves_and_ask_for_their_loads(re
     assert own.inputs == ({"load": 50.0}, {"load": 100.0})
     assert read(loads_and_repeats(loads=(1.0, 1.0))).curves == ("data",)
     assert read(loads_and_repeats(ratios=(20, 180))).curves == ("1 N, 0.2", "2 N, 1.8")
+
+
+ROLLING = (Path(__file__).parent / "data" / "16_pure_rolling_and_half_sliding.csv").read_text()
+ROLLING_SPEEDS = [0.002, 0.02, 0.2, 2.0]
+
+
+@pytest.mark.quick
+def test_rows_of_pure_rolling_are_a_curve(subtests, read):
+    for geometry in ["line", "point"]:
+        with subtests.test(geometry=geometry):
+            found = read(ROLLING, geometry=geometry)
+            assert len(found) == 8 and len(found.curves) == 2
+            assert not any("left out" in note for note in found.notes)
+            if geometry == "point":
+                assert [each["slide_to_roll"] for each in found.inputs] == [0.0, 0.5]
+            for curve in (0, 1):
+                assert found.values[found.curve == curve] == pytest.approx(ROLLING_SPEEDS)
+
+
+@pytest.mark.quick
+def test_a_file_of_pure_rolling_alone_is_read(read_ball):
+    found = read_ball("\n".join(ROLLING.split("\n")[:5]))
+    assert found.values == pytest.approx(ROLLING_SPEEDS) and found.inputs == ({"slide_to_roll": 0.0},)
+
+
+@pytest.mark.quick
+def test_a_ratio_measured_about_zero_is_pure_rolling(read_ball):
+    noisy = ROLLING
+    for ratio in ("0.1", "-0.05", "0.02", "-0.2"):
+        noisy = noisy.replace(";0\n", f";{ratio}\n", 1)
+    found = read_ball(noisy)
+    assert [each["slide_to_roll"] for each in found.inputs] == [0.0, 0.5]
+    assert found.values[found.curve == 0] == pytest.approx(ROLLING_SPEEDS)
+
+
+@pytest.mark.quick
+def test_the_sum_is_asked_for_where_a_sliding_speed_and_pure_rolling_leave_it_open(read_ball):
+    text = "\n".join(["Sliding speed [mm/s];SRR [%];COF", "0;0;0.1", "5;50;0.3", "10;50;0.2", "20;50;0.1"])
+    with pytest.raises(sb.InputError, match="does not give the sum of the surface speeds where 'SRR .%.' is zero"):
+        read_ball(text)
+
+
+FORCES = "\n".join(["speed [mm/s];Fx;Fz", "1;0.5;1000", "2;0.4;1000", "4;0.3;1000", "8;0.2;1000"])
+
+
+@pytest.mark.quick
+def test_units_of_forces_are_taken_from_the_case(read_ball):
+    found = read_ball(FORCES, units={"friction_force": "N", "normal_force": "mN"})
+    assert found.friction == pytest.approx([0.5, 0.4, 0.3, 0.2]) and found.inputs == ({"load": 1.0},)
+    weights = read_ball(FORCES.replace("1000", "1"), units={"friction_force": "gf", "normal_force": "gf"})
+    assert weights.friction == pytest.approx([0.5, 0.4, 0.3, 0.2])
+    over = read_ball(FORCES.replace("Fz", "Fz [N]").replace("Fx", "Fx [N]"), units={"normal_force": "mN"})
+    assert over.friction == pytest.approx([0.5, 0.4, 0.3, 0.2])
+    with pytest.raises(sb.InputError, match="friction_force = 'N' in .fit.units."):
+        read_ball(FORCES)
+
+
+@pytest.mark.quick
+def test_the_unit_of_a_speed_is_that_of_the_column_it_is_made_of(read_ball):
+    rows = "\n1;0.5\n2;0.4\n4;0.3\n8;0.2"
+    bare = read_ball(f"Mean entrainment speed;COF{rows}", units={"speed": "mm/s"})
+    own = read_ball(f"Mean entrainment speed;COF{rows}", units={"entrainment_speed": "mm/s"})
+    written = read_ball(f"Mean entrainment speed [mm/s];COF{rows}", units={"speed": "m/s"})
+    for found in (bare, own, written):
+        assert found.values == pytest.approx([0.002, 0.004, 0.008, 0.016])
+
+
+@pytest.mark.quick
+def test_a_unit_in_the_case_counts_once_where_a_column_is_made_of_another(read_ball):
+    text = "\n".join(["speed [mm/s];load;SRR;COF", "1;5;20;0.5", "2;5;20;0.4", "4;5;20;0.3", "8;5;20;0.2"])
+    found = read_ball(text, units={"load": "mN", "slide_to_roll": "%"}, columns={"speed": "speed"})
+    assert found.inputs == ({"load": pytest.approx(0.005), "slide_to_roll": pytest.approx(0.2)},)
+
+
+@pytest.mark.quick
+def test_a_unit_of_a_column_that_is_not_there_is_said_to_be_idle(read_ball):
+    found = read_ball("speed [mm/s];COF\n1;0.5\n2;0.4\n4;0.3", units={"normal_force": "mN"})
+    assert "No column was taken for normal force, of which [fit.units] has the unit." in found.notes
+
+
+@pytest.mark.quick
+def test_what_has_no_unit_is_given_none(subtests, tmp_path_factory):
+    for name in ["run", "curve"]:
+        with subtests.test(name=name):
+            tmp_path = tmp_path_factory.mktemp("case")
+            case = tmp_path / "case.toml"
+            example = (Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").read_text()
+            case.write_text(f'{example}\n[fit.units]\n{name} = "s"\n')
+            with pytest.raises(sb.InputError, match=f"{name} = 's' is not a known key"):
+                sb.load_case(case)
