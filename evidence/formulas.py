@@ -20,8 +20,7 @@ from stribeck.asymptotics.perturbation import phi
 from stribeck.asymptotics.point import rigid
 from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.contacts.groups import Groups
-from stribeck.curves.landmarks import Landmark
-from stribeck.curves.regime import Transition
+from stribeck.curves.regime import Landmark, Transition
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.solver.point.state import PointState

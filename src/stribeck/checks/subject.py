@@ -20,7 +20,7 @@ from stribeck.solver.solution import Solution
 from stribeck.solver.solve import solve
 
 if TYPE_CHECKING:
-    from stribeck.curves.landmarks import Landmark
+    from stribeck.curves.regime import Landmark
     from stribeck.curves.result import StribeckCurve
 
 # Names of the article's own parts, which need no mention

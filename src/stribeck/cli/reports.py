@@ -26,7 +26,7 @@ from stribeck.solver.numbers import main_rows, report_rows
 if TYPE_CHECKING:
     from stribeck.cases.case import Case
     from stribeck.checks.check import Checks
-    from stribeck.curves.landmarks import Landmark
+    from stribeck.curves.regime import Landmark
     from stribeck.curves.result import StribeckCurve
     from stribeck.quantities.number import Number
     from stribeck.regimes.overview import Overview

@@ -15,9 +15,8 @@ from stribeck._types import Array
 from stribeck.asperity_friction.coulomb import as_asperity_friction
 from stribeck.contacts.friction import Definition, Friction, FrictionArray, check_definition, coefficients, friction_of
 from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, friction_share
-from stribeck.curves.landmarks import Landmark
 from stribeck.curves.line_source import PathSource
-from stribeck.curves.regime import Transition
+from stribeck.curves.regime import Landmark, Transition
 from stribeck.curves.source import Coefficients, CurveValues, Parts, Readings, Source
 from stribeck.numerics.dual import Dual, slope_of
 from stribeck.numerics.events import Event, first_zero, least_by_slope

@@ -1,16 +1,41 @@
-"""The transitions between regimes by name, and where states come from: solved, or read off the atlas."""
+"""The places of a curve by name, its transitions and its minimum, and where states come from: solved, or read off the atlas."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Literal, get_args
+from typing import Annotated, Any, Literal, get_args
 
 from stribeck._types import Array
 from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime
-from stribeck.curves.landmarks import Landmark
+from stribeck.files.results import Record
+from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError, show
+
+
+@dataclass(frozen=True)
+class Landmark(Record):
+    """A characteristic point of a curve: its position and the solution there.
+
+    ``value``, a group [-] or SI of a contact, has also the name of what the curve runs over, as ``curve.minimum.speed``.
+    """
+
+    name: Annotated[str, "minimum or transition", "1"]
+    value: Annotated[float, "where it is along the curve", ""]
+    friction: Annotated[float, "friction coefficient there", "1"]
+    solution: Annotated[Any, "the state; None off the atlas"] = field(default=None, repr=False)
+    error: Annotated[float, "estimated relative error of value", "1"] = math.nan
+    over: Annotated[str, "what the curve runs over"] = field(default="speed", repr=False)
+    unit: Annotated[str, "unit of value", "1"] = field(default="1", repr=False)
+
+    def __getattr__(self, name: str) -> float:
+        """Return the value by the name of what the curve runs over."""
+        if name in GROUPS and name == vars(self).get("over"):
+            return self.value
+        raise AttributeError(f"a landmark over {vars(self).get('over')} has no attribute {name!r}")
+
 
 Method = Literal["solver", "atlas"]  # Where states come from: solved, or read off :mod:`stribeck.atlas`
 

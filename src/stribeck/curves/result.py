@@ -22,8 +22,7 @@ from stribeck.contacts.notes import HARD_PREFIX, law_notes, minimum_note
 from stribeck.contacts.regime import REGIMES, Regime, friction_share, regime_numbers
 from stribeck.curves.coordinate import Over, check_points, given_values
 from stribeck.curves.friction_path import FrictionPath
-from stribeck.curves.landmarks import Landmark
-from stribeck.curves.regime import Method, Transition, check_transition, ranges_of
+from stribeck.curves.regime import Landmark, Method, Transition, check_transition, ranges_of
 from stribeck.curves.simulator_model import StribeckModel, simulator_model
 from stribeck.curves.source import CurveValues, Readings
 from stribeck.curves.table import curve_dict, curve_table

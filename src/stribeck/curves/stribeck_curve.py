@@ -20,9 +20,8 @@ from stribeck.curves.atlas_source import AtlasSource
 from stribeck.curves.ball_source import ball_source
 from stribeck.curves.coordinate import Coordinate, Over, check_inside, check_points, read_problem
 from stribeck.curves.friction_path import FrictionPath
-from stribeck.curves.landmarks import Landmark
 from stribeck.curves.line_source import LineSource
-from stribeck.curves.regime import Method, check_method
+from stribeck.curves.regime import Landmark, Method, check_method
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.source import Coefficients, Progress
 from stribeck.curves.speed_range import SPEEDS, automatic_speed_range, fastest, grown, no_range, part_of_contact

@@ -21,8 +21,7 @@ from stribeck.files.datasets import Column, listed
 from stribeck.files.results import Labelled, Tabled
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.units import InputError, show
-from stribeck.regimes.margin_limits import physical_bounds, scanned_rtol
-from stribeck.regimes.margin_scan import SCANNED, Crossing, Margin, Scan
+from stribeck.regimes.margin_scan import SCANNED, Crossing, Margin, Scan, physical_bounds, scanned_rtol
 from stribeck.solver.base_solution import regime_of_state
 from stribeck.solver.solve import check_rtol, solve
 

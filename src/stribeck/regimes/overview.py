@@ -11,7 +11,7 @@ from stribeck.checks.check import Checks
 from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of, checks_of_curve
 from stribeck.contacts.friction import Friction
-from stribeck.curves.landmarks import Landmark
+from stribeck.curves.regime import Landmark
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.curves.stribeck_curve import stribeck_curve
@@ -21,7 +21,7 @@ from stribeck.files.results import Labelled, Tabled, columns_of_records
 from stribeck.quantities.outcome import Outcome
 from stribeck.regimes.levers import strongest_lever
 from stribeck.regimes.margin_intervals import with_intervals
-from stribeck.regimes.margin_limits import scanned_rtol
+from stribeck.regimes.margin_scan import scanned_rtol
 from stribeck.regimes.margins import RegimeMargins, regime_margins
 from stribeck.solver.base_solution import regime_of_state
 from stribeck.solver.numbers import numbers_of

@@ -19,15 +19,14 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import friction_share, regime_numbers
-from stribeck.curves.landmarks import Landmark
-from stribeck.curves.regime import Method, check_method
+from stribeck.curves.regime import Landmark, Method, check_method
 from stribeck.curves.result import StribeckCurve, path_of
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
-from stribeck.regimes.phase_grid import MARKS, Diagram, empty_diagram
+from stribeck.regimes.phase_grid import MARKS, Diagram, diagram_dataset, empty_diagram
 from stribeck.regimes.weakening import minimum_behind, roughness_without_minimum
 from stribeck.solver.solve import check_rtol, solve
 from stribeck.solver.solve_error import SolveError
@@ -114,7 +113,6 @@ def phase_diagram(
     if merging and not diagram.kind.has_formulas:
         raise InputError("merging = True is for cylinders, geometry 'line'; leave it out for a ball.")
     from stribeck.files.datasets import import_xarray
-    from stribeck.regimes.phase_dataset import diagram_dataset
 
     import_xarray()
     total = diagram.table["regime"].size

@@ -11,7 +11,7 @@ _HOMES = {
     "cli.reports": ("Explanation",),
     "contacts.friction": ("Friction",),
     "contacts.contact": ("HertzScales",),
-    "curves.landmarks": ("Landmark",),
+    "curves.regime": ("Landmark",),
     "curves.result": ("StribeckCurve",),
     "curves.simulator_model": ("StribeckModel",),
     "experiments.compare": ("Comparison",),

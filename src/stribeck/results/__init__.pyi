@@ -8,7 +8,7 @@ from stribeck.checks.check import Check, Checks
 from stribeck.cli.reports import Explanation
 from stribeck.contacts.contact import HertzScales
 from stribeck.contacts.friction import Friction
-from stribeck.curves.landmarks import Landmark
+from stribeck.curves.regime import Landmark
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.simulator_model import StribeckModel
 from stribeck.experiments.compare import Comparison
