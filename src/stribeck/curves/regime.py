@@ -1,4 +1,4 @@
-"""The places of a curve by name, its transitions and its minimum, and where states come from: solved, or read off the atlas."""
+"""The places of a curve by name, its transitions and minimum, and where states come from: solved, or read off the atlas."""
 
 from __future__ import annotations
 

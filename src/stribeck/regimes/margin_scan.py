@@ -1,4 +1,4 @@
-"""The first change of lubrication regime along one input of a contact, an event on the curve over it, and how far it is sought."""
+"""The first change of regime along one input of a contact: an event on the curve over it, and how far it is sought."""
 
 from __future__ import annotations
 
