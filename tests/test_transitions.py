@@ -182,6 +182,13 @@ def test_which_criterion_of_merging_is_near_the_solver():
     np.testing.assert_allclose(over["weakening"], [1294, 87.7], rtol=0.01)
 
 
+def test_friction_without_a_viscous_part_falls_for_ever_and_has_no_minimum():
+    groups = sb.Groups(1.0, 0.1, 1e-4)
+    assert transitions.has_minimum(groups) and not transitions.has_minimum(groups, beta=0.0)
+    with pytest.warns(OutOfRangeWarning, match="is undefined"):
+        assert np.isnan(transitions.speed_at_minimum(groups, beta=0.0))
+
+
 def test_an_unknown_criterion_is_refused_by_name_and_what_is_never_met_is_nan():
     with pytest.raises(sb.InputError, match="'uniform', 'plateau', 'lines', 'weakening'"):
         transitions.roughness_without_minimum(0.1, criterion="slope")
