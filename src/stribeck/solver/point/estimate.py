@@ -147,21 +147,24 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     missing = abs(identity_error(values, equations.speed, equations.far)) / 3.0
     for name in ("J_balanced", "J_published", "J_pcx"):
         errors[name] = max(errors[name], missing)
-    errors |= minimum_errors(coarse, fine, values, errors)
+    errors |= gap_errors(coarse, fine, values, errors)
     ok = coarse.outcome.ok and fine.outcome.ok
     outcome = Outcome.CONVERGED if ok else (fine.outcome if coarse.outcome.ok else coarse.outcome)
     steps, krylov = (getattr(coarse.iterated, name) + getattr(fine.iterated, name) for name in ("steps", "krylov_steps"))
     return Pair(coarse, fine, values, errors, scales, outcome, steps, krylov)
 
 
-def minimum_errors(coarse: Level, fine: Level, values: dict[str, float], errors: dict[str, float]) -> dict[str, float]:
-    """Return the errors of the minimum of the gap and its place, by the difference of the two gaps around it."""
-    # Interpolated minima of two meshes may agree by chance, gaps all around hardly; the place is known as far as the gap is.
+def gap_errors(coarse: Level, fine: Level, values: dict[str, float], errors: dict[str, float]) -> dict[str, float]:
+    """Return the errors of the central and the minimum gap and its place, by the difference of the two gaps around these."""
+    # Gaps of two meshes may agree by chance at one place, all around hardly; the place is known as far as the gap is.
     gap = fine.unknowns.gap
     ours, theirs = (level.unknowns.gap - 0.5 * level.mesh.radii**2 for level in (fine, coarse))
-    apart = np.abs(coarse.mesh.transfer(fine.mesh, theirs[None])[0] - ours)
-    near = float(apart[gap < NEAR_MINIMUM * gap.min()].max())
+    apart = coarse.mesh.transfer(fine.mesh, theirs[None])[0] - ours
+    near = float(np.abs(apart)[gap < NEAR_MINIMUM * gap.min()].max())
     found = {name: max(errors[name], near) for name in ("minimum_gap", "minimum_gap_on_axis")}
+    # In the middle the gap is that of its mean over the angles.
+    middle = np.abs(apart[:, fine.mesh.of_panel[0]].mean(axis=0))
+    found["central_gap"] = max(errors["central_gap"], float(middle.max()))
     place = values["minimum_radius"], values["minimum_angle"]
     radius, angle = reach_of(fine.mesh, gap, *place, found["minimum_gap"])
     radius = max(errors["minimum_radius"], radius)
