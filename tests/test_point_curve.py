@@ -160,3 +160,13 @@ def test_a_curve_of_a_ball_chooses_its_speeds_from_plateau_to_branch():
     assert found.regimes[0] == "boundary"
     assert found.regimes[-1] == "hydrodynamic"
     assert found.observable("fluid_load_share")[0] < 1e-3
+
+
+def test_errors_between_states_hold_where_two_meshes_agree_by_chance_in_the_middle():
+    """The central gap erred by 1.3 times what was stated: that of both meshes beside it was the same."""
+    groups = sb.Groups(1e-2, 0.1, 3e-4, geometry="point")
+    curve = sb.stribeck_curve(groups, speed=np.array([1e-5, 1.06e-3, 1.12e-3, 1e-1]), rtol=1e-3)
+    for read in curve.solutions[1:3]:
+        exact = sb.solve(read.groups, rtol=1e-5)
+        error = abs(read.central_gap / exact.central_gap - 1)
+        assert error <= read.errors["central_gap"] + exact.errors["central_gap"]
