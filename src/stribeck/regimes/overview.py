@@ -11,20 +11,16 @@ from stribeck.checks.check import Checks
 from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of, checks_of_curve
 from stribeck.contacts.friction import Friction
-from stribeck.curves.regime import Landmark
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.curves.table import marks_of
-from stribeck.files.datasets import Column, listed, number_columns
-from stribeck.files.results import Labelled, Tabled, columns_of_records
 from stribeck.quantities.outcome import Outcome
 from stribeck.regimes.levers import strongest_lever
 from stribeck.regimes.margin_intervals import with_intervals
 from stribeck.regimes.margin_scan import scanned_rtol
 from stribeck.regimes.margins import RegimeMargins, regime_margins
 from stribeck.solver.base_solution import regime_of_state
-from stribeck.solver.numbers import numbers_of
 from stribeck.solver.solution import Solution
 from stribeck.uncertainty.propagate import propagate
 from stribeck.uncertainty.result import Uncertainty
@@ -33,7 +29,7 @@ CURVE_POINTS = 41  # Points of the curve on which transitions are looked for, wh
 
 
 @dataclass(frozen=True)
-class Overview(Tabled):
+class Overview:
     """Everything about the regime of a contact: its state, margins, marks of its curve, and what moves its friction."""
 
     case: Case  # The case
@@ -78,17 +74,6 @@ class Overview(Tabled):
             "notes": self.notes,
             **({} if self.errors is None else {"uncertainty": self.errors.to_dict()}),
         }
-
-    def _labelled(self) -> Labelled:
-        columns, coords, about = self.margins._labelled()
-        marks = columns_of_records("transition", self.curve.transitions, Landmark._labels)
-        inputs: Column = ("sensitive_to", listed([*self.sensitivities]), "1", "input")
-        slopes: Column = ("sensitive_to", [*self.sensitivities.values()], "1", "derivative of ln(friction) by ln(input)")
-        found = number_columns(numbers_of(self.solution)) | {f"margin_{name}": column for name, column in columns.items()}
-        coords = {**coords, "transition": marks.pop("name"), "sensitive_to": inputs}
-        found |= {f"transition_{name}": column for name, column in marks.items()} | {"sensitivity": slopes}
-        about = {**about, "title": self.case.title or "Regime of a contact", "definition": self.curve.definition}
-        return found, coords, about | {"notes": "\n".join(self.notes)}
 
 
 def overview_of(case: Case, on_point: Callable[[int, int], object] | None = None, *, is_whole: bool = False) -> Overview:
