@@ -37,7 +37,6 @@ from stribeck.contact_laws.scaled import by_group
 from stribeck.equations.damping import longest_step
 from stribeck.equations.film import NODAL, gradient_in_film
 from stribeck.equations.operators import LOAD, Operators
-from stribeck.equations.unknowns import Layout
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film
 from stribeck.numerics.newton import LU, Inverse
@@ -63,6 +62,21 @@ class Fields(NamedTuple):
     flux_gap: Any = None
     exit: Any = None
     cavity_stretch: Any = None
+
+
+class Layout(NamedTuple):
+    """Where each unknown, and its row of the residual, lies in the vector that Newton's iteration moves."""
+
+    # ``y[..., layout.offset]`` keeps the axis of a number, so that it is a column of stacked states.
+
+    size: int
+    gap: slice
+    numbers: slice  # All that have one value
+    offset: slice
+    flux_gap: slice
+    pressure: slice  # Empty where the fluid pressure is no unknown, as are the next two of films without such an end
+    exit: slice
+    cavity_stretch: slice
 
 
 @dataclass(frozen=True, eq=False)
