@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
 import stribeck as sb
-from stribeck.cli.exits import complain
+from stribeck.cli.exits import EXIT_BAD_INPUT, answer, complain
+from stribeck.files.writing import check_writable, need_extra
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError, checked_word, read_number, show, to_si
+
+if TYPE_CHECKING:
+    from stribeck.checks.check import Checks
 
 DEFAULT_RTOL = 1e-6  # Tolerance of a case that names none; to load cases for it alone takes longer than a state.
 
@@ -91,7 +96,96 @@ class ModelOptions:
         return {name: value for name, value in vars(self).items() if value is not None}
 
 
-GROUP_OPTIONS, MODEL_OPTIONS = GroupOptions(), ModelOptions()  # None of them given.
+@Parameter(name="*")
+@dataclass(frozen=True)
+class Outputs:
+    """What is printed and written of a result.
+
+    Parameters
+    ----------
+    plot
+        Picture to write: .png, .svg or .pdf.
+    json
+        Print JSON.
+    force
+        Replace files that are there.
+    no_notes
+        Draw without the notes below the picture.
+    """
+
+    plot: Path | None = None
+    json: bool = False
+    force: bool = False
+    no_notes: bool = False
+
+    def check(self, case: Path | None = None, data: Sequence[Path] = ()) -> None:
+        """Refuse a picture, a case and files of data that could not be written, before the work whose results they are for."""
+        from stribeck.files.datasets import check_export
+        from stribeck.plot.style import PICTURE_ENDINGS
+
+        for path in data:
+            check_export(path, force=self.force)
+        if self.plot is not None:
+            check_writable(self.plot, PICTURE_ENDINGS, force=self.force)
+            need_extra("a picture", "plot", "matplotlib")
+        if case is not None:
+            check_writable(case, (".toml",), force=self.force)
+        paths = [*data, *filter(None, (self.plot, case))]
+        for i, path in enumerate(paths):
+            if path.resolve() in [each.resolve() for each in paths[:i]]:
+                raise InputError(f"{path} is given twice as an output; give each output its own name.")
+
+    def write(
+        self,
+        found: Any,
+        title: str = "",
+        data: Sequence[Path] = (),
+        others: Mapping[Path, Callable[[], object]] | None = None,
+        **drawing: Any,
+    ) -> tuple[list[str], list[str]]:
+        """Write files of a result; return the names of those that were written, and a sentence about each that was not."""
+        from stribeck.files.datasets import write_data
+
+        titled = {"title": title} if title else {}
+        noted = {"notes": False} if self.no_notes else {}
+        actions: dict[Path, Callable[[], object]] = {}
+        if data:
+            dataset = found.to_dataset()
+            dataset.attrs |= titled
+            actions |= {path: partial(write_data, dataset, path, force=self.force) for path in data}
+        if self.plot is not None:
+            actions[self.plot] = partial(found.plot, self.plot, force=self.force, **titled, **noted, **drawing)
+        written, problems = [], []
+        for path, action in (actions | dict(others or {})).items():
+            try:
+                action()
+            except InputError as problem:
+                problems.append(str(problem))
+            else:
+                written.append(str(path))
+        return written, problems
+
+    def finish(
+        self,
+        found: Any,
+        lines: Callable[[], Iterable[str]],
+        title: str = "",
+        *,
+        content: Callable[[], dict[str, Any]] | None = None,
+        data: Sequence[Path] = (),
+        others: Mapping[Path, Callable[[], object]] | None = None,
+        checks: Checks | None = None,
+        case: sb.Case | None = None,
+    ) -> int:
+        """Write the files of a result, print it, and return the exit code of what could not be written."""
+        written, problems = self.write(found, title, data, others)
+        made = content or found.to_dict
+        answer(self.json, lambda: made() | {"files": written}, lines, checks, case, written)
+        return complain("\n".join(problems), EXIT_BAD_INPUT if problems else 0)
+
+
+# None of them given
+GROUP_OPTIONS, MODEL_OPTIONS, OUTPUTS = GroupOptions(), ModelOptions(), Outputs()
 
 
 def read_case(

@@ -9,9 +9,8 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 import stribeck as sb
-from stribeck.cli.arguments import Quantity, Verbose
-from stribeck.cli.exits import EXIT_BAD_INPUT, complain
-from stribeck.cli.outputs import OUTPUTS, Outputs, answer
+from stribeck.cli.arguments import OUTPUTS, Outputs, Quantity, Verbose
+from stribeck.cli.exits import EXIT_BAD_INPUT, answer, complain
 from stribeck.cli.progress import interruptible
 from stribeck.files.writing import check_writable
 

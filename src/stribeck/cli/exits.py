@@ -1,18 +1,24 @@
-"""Exit codes, lines on stdout, sentences on stderr, and streams that take no more."""
+"""Exit codes, text or JSON on stdout, sentences on stderr, and streams that take no more."""
 
 from __future__ import annotations
 
 import io
+import json
+import math
 import os
 import re
 import signal
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from types import FrameType
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 from stribeck.files.writing import reason_of
+
+if TYPE_CHECKING:
+    from stribeck.cases.case import Case
+    from stribeck.checks.check import Checks
 
 EXIT_FAILED = 1  # Exit code where a state was not found.
 EXIT_BAD_INPUT = 2  # Exit code where an input is refused.
@@ -98,3 +104,33 @@ class Interrupted:
         """Handle Ctrl-C."""
         self.pressed = True
         signal.default_int_handler(number, frame)
+
+
+def answer(
+    as_json: bool,
+    content: Callable[[], dict[str, Any]],
+    lines: Callable[[], Iterable[str]],
+    checks: Checks | None = None,
+    case: Case | None = None,
+    written: Iterable[str] = (),
+) -> None:
+    """Print what a command found, as JSON with checks and conversions, or as text with the files that were written."""
+    if not as_json:
+        show([*lines(), *(f"Written: {path}" for path in written)])
+        return
+    found = (checks.to_dict() if checks is not None else {}) | content()
+    found |= {"conversions": list(case.conversions)} if case is not None and case.conversions else {}
+    print(json.dumps(_plain(found), indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def _plain(content: Any) -> Any:
+    """Return content for JSON; what is not finite becomes null, as JSON knows no nan."""
+    if isinstance(content, dict):
+        return {name: _plain(value) for name, value in content.items()}
+    if hasattr(content, "tolist"):  # of arrays
+        return _plain(content.tolist())
+    if isinstance(content, list | tuple):
+        return [_plain(value) for value in content]
+    if isinstance(content, float) and not math.isfinite(content):
+        return None
+    return content

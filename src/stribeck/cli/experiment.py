@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stribeck.cli.arguments import Verbose
-from stribeck.cli.outputs import answer
+from stribeck.cli.exits import answer
 from stribeck.cli.progress import interruptible
 from stribeck.quantities.formats import format_percent
 from stribeck.quantities.units import checked_word

@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import stribeck as sb
-from stribeck.cli.arguments import Names, Quantities, Whole
+from stribeck.cli.arguments import OUTPUTS, Names, Outputs, Quantities, Whole
 from stribeck.cli.exits import EXIT_FAILED, complain
-from stribeck.cli.outputs import OUTPUTS, Outputs
 from stribeck.cli.progress import interruptible
 from stribeck.quantities.units import InputError
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from stribeck.cli.arguments import Quantity
-from stribeck.cli.outputs import answer
+from stribeck.cli.exits import answer
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.units import InputError, checked_word, show, to_si
 

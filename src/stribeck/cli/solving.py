@@ -12,9 +12,11 @@ import stribeck as sb
 from stribeck.cli.arguments import (
     GROUP_OPTIONS,
     MODEL_OPTIONS,
+    OUTPUTS,
     GroupOptions,
     ModelOptions,
     Number,
+    Outputs,
     Pair,
     Quantity,
     Triple,
@@ -26,8 +28,7 @@ from stribeck.cli.arguments import (
     curve_arguments,
     read_case,
 )
-from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, EXIT_INTERRUPTED, complain, show
-from stribeck.cli.outputs import OUTPUTS, Outputs, answer
+from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, EXIT_INTERRUPTED, answer, complain, show
 from stribeck.cli.progress import interruptible
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS

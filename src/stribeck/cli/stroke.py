@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 import stribeck as sb
-from stribeck.cli.arguments import Verbose
-from stribeck.cli.outputs import OUTPUTS, Outputs
+from stribeck.cli.arguments import OUTPUTS, Outputs, Verbose
 from stribeck.cli.progress import interruptible
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 import stribeck as sb
-from stribeck.cli.arguments import Number, Whole
-from stribeck.cli.exits import EXIT_FAILED, EXIT_INTERRUPTED, complain, show
+from stribeck.cli.arguments import OUTPUTS, Number, Outputs, Whole
+from stribeck.cli.exits import EXIT_FAILED, EXIT_INTERRUPTED, answer, complain, show
 from stribeck.cli.fits import ENDING
-from stribeck.cli.outputs import OUTPUTS, Outputs, answer
 from stribeck.cli.progress import interruptible
 from stribeck.files.writing import atomic_write
 
