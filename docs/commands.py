@@ -1,9 +1,8 @@
-"""Write the table of docs/cli.md: each command with what it takes and what it does.
+"""Write the list of docs/cli.md: each command with its page.
 
-``python docs/commands.py`` rewrites the table between the marks of the page; ``tests/test_docs.py`` compares them.
+``python docs/commands.py`` rewrites the list between the marks of the page; ``tests/test_docs.py`` compares them.
 """
 
-import inspect
 import re
 from pathlib import Path
 
@@ -15,6 +14,8 @@ MARKED = re.compile(r"(<!-- commands -->\n\n).*?(\n<!-- end of commands -->)", r
 READ_MORE = {
     "new": "data_sheet.md",
     "check": "checks.md",
+    "solve": "#a-state-and-a-curve",
+    "curve": "#a-state-and-a-curve",
     "regimes": "#what-moves-friction",
     "figures": "figures.md",
     "explore": "explorer.md",
@@ -33,25 +34,12 @@ READ_MORE = {
 }
 
 
-def row(name, command):
-    """Return what a command takes, with a link to its page, and what its help says first, up to its details."""
-    words = [name]
-    for each in inspect.signature(command).parameters.values():
-        if each.kind is not each.KEYWORD_ONLY:
-            word = f"{each.name.upper()}{'...' * (each.kind is each.VAR_POSITIONAL or 'list' in str(each.annotation))}"
-            words.append(word if each.default is each.empty else f"[{word}]")
-    said = re.split("[:;,.\n]", inspect.getdoc(command))[0].replace("|", r"\|")
-    shown = f"`{' '.join(words)}`"
-    return f"| {f'[{shown}]({READ_MORE[name]})' if name in READ_MORE else shown} | {said} |\n"
-
-
 def with_table(text):
-    """Return the text of the page with the commands of now."""
-    head = "| `stribeck` | What it does |\n| --- | --- |\n"
-    table = head + "".join(row(name, command) for name, command in COMMANDS.items())
-    text, count = MARKED.subn(lambda found: found[1] + table + found[2], text)
+    """Return the text of the page with the commands of now, each with a link to its page."""
+    shown = [f"[`{name}`]({READ_MORE[name]})" for name in COMMANDS]
+    text, count = MARKED.subn(lambda found: found[1] + ",\n".join(shown) + ".\n" + found[2], text)
     if count != 1:
-        raise ValueError(f"{PAGE.name} has {count} places for the table of commands")
+        raise ValueError(f"{PAGE.name} has {count} places for the list of commands")
     return text
 
 
