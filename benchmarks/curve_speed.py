@@ -7,12 +7,10 @@ does undisturbed; medians differ by what else runs on it.
 
 from __future__ import annotations
 
-import platform
 import sys
 import time
 
 import numpy as np
-import scipy
 from scipy.linalg import lapack
 
 import stribeck as sb
@@ -46,7 +44,6 @@ def curve(rtol: float) -> tuple[float, float, sb.results.StribeckCurve]:
 
 def main() -> None:
     """Print the table."""
-    print(f"Python {platform.python_version()}, NumPy {np.__version__}, SciPy {scipy.__version__}, {platform.machine()}\n")
     print("| rtol | curve [ms] | cost [LU(300)] | with transitions | states | error estimate |")
     print("|---|---|---|---|---|---|")
     for rtol in (1e-6, 1e-9):
