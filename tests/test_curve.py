@@ -259,6 +259,17 @@ def test_arguments_that_cannot_be_are_refused(subtests):
                 sb.stribeck_curve(CONTACT, **arguments)
 
 
+def test_a_number_that_no_solution_has_is_refused_with_those_that_there_are(curve):
+    with pytest.raises(
+        sb.InputError, match="name = 'height'; it must be the name of a number of every solution, such as .*viscous_balanced"
+    ):
+        curve.observable("height")
+    of_atlas = sb.stribeck_curve(CONTACT, points=5, method="atlas")
+    with pytest.raises(sb.InputError, match="name = 'height'; the atlas has (?!.*viscous).*central_gap"):
+        of_atlas.observable("height")
+    assert set(of_atlas.observables) < set(curve.observables)
+
+
 def test_groups_that_are_missing_or_both_zero_are_named():
     with pytest.raises(sb.InputError, match="roughness missing; give a LineContact or PointContact, or the groups"):
         sb.stribeck_curve(load=0.1)

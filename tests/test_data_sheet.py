@@ -404,3 +404,11 @@ def test_films_at_rest_have_the_errors_of_their_inputs_and_friction_that_of_aspe
     assert found["central_gap"].interval_68 == pytest.approx((low, high), rel=0.02)
     assert found["friction"].interval_68 == pytest.approx((0.7 * math.exp(-0.1), 0.7 * math.exp(0.1)), rel=0.02)
     assert found.to_si()["friction"] == pytest.approx(TRUE.boundary_friction)
+
+
+def test_the_picture_of_the_errors_has_a_row_for_each_positive_number_of_the_state():
+    plot = pytest.importorskip("matplotlib.pyplot")
+    found = sb.propagate(TRUE, {"viscosity": 0.01, "boundary_friction": 0.007}, transitions=False)
+    figure = found.plot()
+    assert [each.get_text() for each in figure.axes[0].get_yticklabels()] == [each.label for each in found.spreads]
+    plot.close(figure)

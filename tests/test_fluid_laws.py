@@ -83,6 +83,13 @@ FUNCTIONS = {
 
 
 @pytest.mark.quick
+def test_flow_factors_show_their_numbers_and_their_roughness_where_it_is_known():
+    factors = PatirCheng(2.0, 3.0, 0.5)
+    known = {"gamma": 3, "substrate_share": 0.5, "friction_factors": "false", "argument": "nominal"}
+    assert factors.parameters == known
+    assert factors.scaled(FilmUnits(1, 1, 1, 1, decay_length=0.1)).parameters == known | {"sigma": pytest.approx(0.2)}
+
+
 def test_a_traced_film_has_the_differences_of_what_it_returns(subtests):
     for name in FILMS:
         for function in FUNCTIONS:

@@ -63,6 +63,7 @@ def test_what_breaks_the_curve_is_named_with_its_direction_and_size():
         shifted = sb.master_curve(curves(seed, wrong_viscosity=1.7, error=error), TRUE)["speed_viscosity"]
         mix = next(each for each in shifted.offsets if each.curve == "mix")
         assert not shifted.is_one and mix.is_shift and mix.is_far
+        assert f"; a factor {mix.shift:.3g} ± " in mix.sentence and "a factor" not in far.sentence
         assert np.log(mix.shift) == pytest.approx(-np.log(1.7), abs=4 * mix.shift_error)
 
 

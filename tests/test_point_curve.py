@@ -154,9 +154,9 @@ def test_the_curve_of_a_ball_agrees_with_an_independent_solver():
         assert (np.abs(found.observable(name) - wanted) <= 2e-6 * scale + allowed).all(), name
 
 
-@pytest.mark.slow
 def test_a_curve_of_a_ball_chooses_its_speeds_from_plateau_to_branch():
-    found = sb.stribeck_curve(groups(), points=7, rtol=1e-3, boundary_friction=MU0, beta=BETA)
+    rough = sb.Groups(1.0, 0.1, 3e-3, geometry="point")
+    found = sb.stribeck_curve(rough, points=4, rtol=1e-2, boundary_friction=1.0, beta=1.0)
     assert found.regimes[0] == "boundary"
     assert found.regimes[-1] == "hydrodynamic"
     assert found.observable("fluid_load_share")[0] < 1e-3
