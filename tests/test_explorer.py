@@ -1111,6 +1111,11 @@ def test_a_file_that_holds_nothing_of_use_is_refused_under_its_name(subtests):
     ]:
         with subtests.test(name), pytest.raises(sb.InputError, match=f"(?s){words}"):
             read_file("measured", name, content, START.contact)
+    curve = b"speed [m/s];friction\n0.001;0.5\n0.01;0.3\n0.1;0.2\n"
+    for name in ("a." + 300 * "x", "a.\0csv", "../../a.csv"):
+        with subtests.test(name):
+            assert len(read_file("measured", name, curve, START.contact)) == 1
+            assert read_file("headers", name, curve, START.contact) == ["speed [m/s]", "friction"]
 
 
 def test_history_goes_back_and_forth_and_forgets_what_was_undone_before_a_change():

@@ -64,6 +64,7 @@ Kind = Literal["case", "measured", "scan", "headers"]
 
 def read_file(kind: Kind, name: str, content: bytes, contact: Contact, asked: Mapping[str, Any] | None = None) -> Any:
     """Return what a file holds; of measured curves a table ``[fit]`` may say what the columns are."""
+    name = shown_name(name)
     try:
         if kind == "case":
             found = from_case(read_case(name, content))
