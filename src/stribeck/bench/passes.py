@@ -244,6 +244,7 @@ def start_of(series: Array, common: tuple[float, float]) -> tuple[int, float]:
     rows = len(series)
     if rows < 2 * FEWEST_BLOCKS:
         return 0, 0.0
+    # MSER [White 1997]; where the means differ by less than three standard errors, what looks like a start is noise.
     left = np.arange(rows, 0, -1)
     sums, squares = (np.cumsum(each[::-1])[::-1] for each in (series, (series - series.mean()) ** 2))
     deviations = squares - left * (sums / left - series.mean()) ** 2

@@ -100,8 +100,8 @@ def mesh_for(
     if turns_sharply and isinstance(guess, State):  # where no load feels it flux and drag do
         pressure_scale = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
     highest, to_exit = highest_degree(order), reference(order).left_end[::-1]
-    # At the exit; a rigid guess has no gradient there.
-    at_exit = pressure_scale * guess.fields(np.array([np.nextafter(0.0, -1.0)]))[1:].sum()
+    # At the exit, where the film has one; a rigid guess has no gradient there.
+    at_exit = pressure_scale * guess.fields(np.array([np.nextafter(0.0, -1.0)]))[1:].sum() if ends else 0.0
     thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
     sheared = 0.0
     if closed_at is not None and tolerance < COARSE_RTOL and isinstance(guess, State) and float(guess.gap.min()) < closed_at:
