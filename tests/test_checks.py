@@ -10,7 +10,7 @@ from command_line import EXAMPLES, FEW, PDMS, call, case_text
 from fit_data import TRUE
 
 import stribeck as sb
-from stribeck.cases.facts import FACTS, fact_values
+from stribeck.cases.case import FACTS, fact_values
 from stribeck.checks.subject import Subject, speed_of_film
 from stribeck.checks.table import ROWS, checks_of, checks_of_curve, checks_of_solution
 from stribeck.contact_laws import FiniteSurface

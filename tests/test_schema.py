@@ -13,7 +13,7 @@ from command_line import call
 from numpydoc.docscrape import get_doc_object
 
 import stribeck as sb
-from stribeck.cases.facts import FACTS
+from stribeck.cases.case import FACTS
 from stribeck.cases.law import INPUTS_OF_SURFACES, SURFACE
 from stribeck.cases.reading import check_case
 from stribeck.contact_laws.greenwood import SUMMITS, GreenwoodTripp

@@ -14,9 +14,8 @@ from stribeck.bench.points import Point, points_of, run_in_of
 from stribeck.bench.raw import Raw, read_raw
 from stribeck.bench.result import BenchCurve
 from stribeck.bench.segments import directions
-from stribeck.cases.bench_settings import with_bench_keys
 from stribeck.cases.case import Case
-from stribeck.cases.fit_settings import FitSettings
+from stribeck.cases.fit_settings import FitSettings, with_bench_keys
 from stribeck.cases.reading import load_rig
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.fits.reading import files_of

@@ -1,16 +1,29 @@
-"""What the ``[fit]`` table of a case asks for, as far as it can be checked without the data."""
+"""What the tables ``[fit]`` and ``[bench]`` of a case ask for, as far as it can be checked without the data."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field, fields
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, fields, replace
 from functools import partial
 from typing import Any, Literal, Self
 
-from stribeck.cases.hints import advice_on
 from stribeck.cases.model_parts import take_parts
-from stribeck.cases.tables import TRUTH, Check, Key, must, noted, one_of, read_tables, rising_pair, unknown, whole
+from stribeck.cases.tables import (
+    AS_GIVEN,
+    TRUTH,
+    Check,
+    Key,
+    Keys,
+    advice_on,
+    must,
+    noted,
+    one_of,
+    read_tables,
+    rising_pair,
+    unknown,
+    whole,
+)
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.geometries import INPUT_TABLES, LINE
 from stribeck.contacts.inputs import InputTable
@@ -18,7 +31,7 @@ from stribeck.contacts.parts import PART_INPUTS, PURE_SLIDING, Parts
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.docstrings import complete_docstring
 from stribeck.quantities.schema import Input, numbers_of
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, checked_kind, checked_word, show
 
 Noise = Literal["relative", "absolute"]
 
@@ -58,8 +71,7 @@ def free_names(names: Iterable[Any], where: str = "free") -> tuple[str, ...]:
         if name in ("speed", "U"):
             raise InputError(f"{where} has {show(name)}, which is measured; a common factor on it is that of the viscosity.")
         if name not in FREE_INPUTS:
-            hint = advice_on(str(name), FREE_INPUTS) or f"known are {', '.join(FREE_INPUTS)}"
-            raise InputError(f"{where} has {show(name)}, which cannot be fitted; {hint}.")
+            raise InputError(f"{where} has {show(name)}, which cannot be fitted; {advice_on(str(name), FREE_INPUTS)}.")
         if name in found:
             raise InputError(f"{where} has {name} twice; name each input once.")
         found.append(name)
@@ -386,3 +398,51 @@ def check_fit_table(table: Any, geometry: str = "line", liquid: Any = None) -> F
     if problems:
         raise InputError("\n".join(problems))
     return settings
+
+
+# What both tables say of data files, under the same name.
+SHARED = ("columns", "units", "header_row", "sheet", "track_radius", "arm", "run_in", "files")
+
+PER_DECADE = Input(
+    name="per_decade", label="bins per decade", dimension="number", typical="10", lowest=1, highest=1000, zero=True
+)
+
+
+def with_bench_keys(settings: FitSettings, given: Mapping[str, Any], table: str = "") -> FitSettings:
+    """Return what ``[fit]`` says of data files, with the keys of ``[bench]`` that are given, or its table, in their place."""
+    of_fit, problems = keys_of_fit(settings.geometry, "bench"), list[str]()
+    keys: Keys = {
+        **{name: of_fit[name] for name in SHARED},
+        "name": of_fit["file_names"],
+        "per_decade": Key(lambda name, value: PER_DECADE.checked(value)),
+        "fluid": Key(lambda name, value: _liquid(value)),
+        "temperature": AS_GIVEN,
+    }
+    read = read_tables({table: given.get(table, {})} if table else given, {table: keys}, problems)
+    if problems:
+        raise InputError("\n".join(problems))
+    found = read.get(table, {}) if table else read
+    liquid = found.pop("fluid", settings.liquid)
+    if "temperature" in found:
+        liquid = liquid | {"temperature": found.pop("temperature")}
+    if "name" in found:
+        found["file_names"] = found.pop("name")
+    return replace(settings, liquid=liquid, **found)
+
+
+def _liquid(fluid: Any) -> dict[str, Any]:
+    """Return a liquid and its conditions, as ``iso-vg grade=46`` or a table gives them, as the table ``[fluid]``."""
+    if isinstance(fluid, str):
+        word, *rest = fluid.split()
+        if not all("=" in each for each in rest):
+            raise InputError(f"fluid = {show(fluid)}; write a liquid and its conditions, as 'iso-vg grade=46'.")
+        given: dict[str, Any] = {"preset": word, **dict(each.split("=", 1) for each in rest)}
+    else:
+        given = dict(checked_kind("fluid", fluid, Mapping, "text as 'iso-vg grade=46', or a mapping"))
+    preset = PRESETS[checked_word("fluid", given.get("preset", ""), tuple(PRESETS))]
+    if "temperature" not in preset.conditions:
+        raise InputError(
+            f"fluid = {show(fluid)} has its viscosity at one temperature only; take a liquid of which more is known."
+        )
+    preset(**{key: value for key, value in given.items() if key != "preset"})  # refuses what it does not know
+    return given

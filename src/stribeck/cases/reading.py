@@ -5,19 +5,19 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, get_args
 
-from stribeck.cases.bench_settings import with_bench_keys
 from stribeck.cases.case import (
     DEFAULT_POINTS_AND_RTOL,
+    FACTS,
     Axis,
     Case,
     CurveSettings,
     StrokeSettings,
     curve_range,
+    fact_values,
     stroke_settings,
 )
 from stribeck.cases.case import KEYS as KEYS_OF_STROKE
-from stribeck.cases.facts import FACTS, fact_values
-from stribeck.cases.fit_settings import FitSettings, check_fit_table
+from stribeck.cases.fit_settings import FitSettings, check_fit_table, with_bench_keys
 from stribeck.cases.law import ERRORS_OF_SURFACES, INPUTS_OF_SURFACES, KEYS_OF_SURFACES, LAW_KEY, SURFACE, law_of_file
 from stribeck.cases.model_parts import in_file, take_parts
 from stribeck.cases.tables import AS_GIVEN, HEAD, Key, Keys, noted, one_of, read_tables, tolerance, whole

@@ -49,7 +49,7 @@ class Subject:
     """A contact under examination."""
 
     contact: Contact  # The contact
-    facts: Mapping[str, float] = field(default_factory=dict)  # Facts of :data:`stribeck.cases.facts.FACTS` in SI units
+    facts: Mapping[str, float] = field(default_factory=dict)  # Facts of :data:`stribeck.cases.case.FACTS` in SI units
     definition: Definition = "balanced"  # Definition of the viscous friction
     solved: Solution | None = None  # State of the contact, if already solved
     traced: StribeckCurve | None = None  # Curve of the contact over the speed, if already solved

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
-from stribeck.cases.facts import fact_values
+from stribeck.cases.case import fact_values
 from stribeck.checks import body, film, law
 from stribeck.checks.check import Check, Checks
 from stribeck.checks.subject import Subject

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL, MOTIONS
-from stribeck.cases.facts import FACTS
+from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL, FACTS, MOTIONS
 from stribeck.cases.law import INPUTS_OF_SURFACES, LAWS, NEEDED_TABLE, Law
 from stribeck.cases.model_parts import FLUID_KINDS
 from stribeck.contacts.geometries import INPUT_TABLES

@@ -10,8 +10,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.cases.hints import advice_on
-from stribeck.cases.tables import Key, noted, one_of, read_tables, rising_pair, whole
+from stribeck.cases.tables import Key, advice_on, noted, one_of, read_tables, rising_pair, whole
 from stribeck.contacts.geometries import LINE
 from stribeck.contacts.groups import GROUP_INPUTS
 from stribeck.quantities.schema import Input
@@ -103,8 +102,7 @@ def read_axes(
     for name, entry in vary.items():
         with noted(problems, "vary"):
             if name not in rows:
-                hint = advice_on(name, rows) or f"known are {', '.join(rows)}"
-                raise InputError(f"{show(name)} cannot vary; {hint}.")
+                raise InputError(f"{show(name)} cannot vary; {advice_on(name, rows)}.")
             # This stands for an axis that is refused, so that nothing else is said of it.
             axes[name] = Axis(values=(rows[name].typical_value,))
             axes[name] = _axis_of(name, entry, design.get("kind", "grid"), rows[name])
