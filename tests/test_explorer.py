@@ -30,12 +30,20 @@ from stribeck.explorer import charts, curves, server, table
 from stribeck.explorer import downloads as files
 from stribeck.explorer.answer import Answerer, Pinned
 from stribeck.explorer.inputs import choices, inputs, url
-from stribeck.explorer.inputs.history import History
-from stribeck.explorer.measured import fit_measured, headers_of, read_measured
+from stribeck.explorer.inputs.inputs import History
 from stribeck.explorer.page import parts_of
-from stribeck.explorer.pools import Threads, run
-from stribeck.explorer.uploads import read_file, read_scan, with_scan
-from stribeck.explorer.words import words_page
+from stribeck.explorer.server import words_page
+from stribeck.explorer.tab import Threads, run
+from stribeck.explorer.uploads import (
+    fit_measured,
+    headers_of,
+    read_case,
+    read_file,
+    read_measured,
+    read_scan,
+    shown_name,
+    with_scan,
+)
 from stribeck.files.toml import toml_text
 from stribeck.plot import style
 from stribeck.quantities import units
@@ -244,7 +252,7 @@ def check_kept(shown):
     """Check that a link and the saved case bring inputs back."""
     opened = reopened(url.encode(shown))
     assert (opened.problems, opened.inputs) == ({}, shown)
-    saved = inputs.from_case(files.read_case("saved.toml", saved_case(shown)))
+    saved = inputs.from_case(read_case("saved.toml", saved_case(shown)))
     same_contact(saved.contact, shown.contact)
     for name in ("definition", "rtol", "title"):
         assert getattr(saved.case, name) == getattr(shown.case, name), name
@@ -264,7 +272,7 @@ def test_all_that_a_case_holds_goes_through_link_and_saved_case(subtests, tmp_pa
             pins = START.replace(title="kept ~ once", definition="published"), shown.replace(title="law")
             opened = reopened(url.encode(shown, pins))
             assert (opened.problems, opened.inputs, opened.pins) == ({}, shown, pins)
-            saved = files.read_case("saved.toml", saved_case(shown))
+            saved = read_case("saved.toml", saved_case(shown))
             same_contact(saved.contact, case.contact)
             for name in ("law", "curve", "rtol", "definition", "title", "notes", "fit", "facts"):
                 assert getattr(saved, name) == getattr(case, name), name
@@ -306,7 +314,7 @@ def test_what_no_address_can_hold_is_refused_at_load(tmp_path):
 
 def test_an_uploaded_case_that_names_a_file_says_what_to_do(tmp_path):
     with pytest.raises(sb.InputError, match=r"case.toml: \[table\] file = 'law.csv' is a file that the browser did not send"):
-        files.read_case("C:\\data\\case.toml", b'[table]\nfile = "law.csv"\n')
+        read_case("C:\\data\\case.toml", b'[table]\nfile = "law.csv"\n')
 
 
 def test_neither_a_link_nor_an_upload_reads_a_file_of_this_machine(tmp_path):
@@ -320,7 +328,7 @@ def test_neither_a_link_nor_an_upload_reads_a_file_of_this_machine(tmp_path):
         assert "the secret" not in str(opened), (name, key)
         case = {"contact": START.tables["contact"] | own, name: {key: str(secret)}}
         with pytest.raises(sb.InputError) as problem:
-            files.read_case("case.toml", toml_text(case).encode())
+            read_case("case.toml", toml_text(case).encode())
         assert "the secret" not in str(problem.value), (name, key)
 
 
@@ -334,8 +342,8 @@ def test_odd_names_of_uploads_become_plain_ones(subtests):
         ("a\nb", "a_b"),
     ]:
         with subtests.test(name=name, shown=shown):
-            assert files.shown_name(name) == shown
-            assert len(files.shown_name(300 * "x" + ".csv")) <= 80 and files.shown_name(300 * "x" + ".csv").endswith("xxx.csv")
+            assert shown_name(name) == shown
+            assert len(shown_name(300 * "x" + ".csv")) <= 80 and shown_name(300 * "x" + ".csv").endswith("xxx.csv")
 
 
 # --- the parts of the model ---
@@ -929,7 +937,7 @@ def test_the_case_that_is_downloaded_reproduces_what_is_shown(tmp_path, answer):
     assert case.contact == odd.contact
     assert (case.definition, case.title, case.curve.points) == ("balanced", odd.case.title, 121)
     assert case.curve.range == (shown.curve.speed[0], shown.curve.speed[-1])
-    assert files.read_case("case.toml", path.read_bytes()).contact == odd.contact
+    assert read_case("case.toml", path.read_bytes()).contact == odd.contact
 
 
 def rows_of(content):
@@ -979,7 +987,7 @@ def test_a_pin_is_named_after_what_differs_from_the_start():
 
 def test_a_wrong_case_names_its_file_and_all_that_is_wrong():
     with pytest.raises(sb.InputError) as problem:
-        files.read_case("my seal.toml", b'[contact]\nradius = "1 s"\n')
+        read_case("my seal.toml", b'[contact]\nradius = "1 s"\n')
     lines = str(problem.value).splitlines()
     assert len(lines) > 3 and all(line.startswith("my seal.toml: [contact] ") for line in lines)
 

@@ -20,7 +20,8 @@ from urllib.parse import quote
 import pytest
 
 import stribeck as sb
-from stribeck.explorer.guard import MAX_REQUEST_BYTES, Guard, check_host
+from stribeck.explorer.guard import MAX_REQUEST_BYTES, Guard
+from stribeck.explorer.server import check_host
 
 pytest.importorskip("nicegui")
 

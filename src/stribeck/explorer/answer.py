@@ -41,7 +41,7 @@ from stribeck.explorer.curves import (
     transition_marks,
 )
 from stribeck.explorer.inputs.inputs import Inputs
-from stribeck.explorer.measured import Measured
+from stribeck.explorer.uploads import Measured
 from stribeck.quantities.units import InputError
 from stribeck.regimes.margin_intervals import with_intervals
 from stribeck.regimes.margins import RegimeMargins, regime_margins

@@ -12,20 +12,16 @@ from typing import Any
 
 import numpy as np
 
-from stribeck.cases.case import Case
-from stribeck.cases.reading import check_case
 from stribeck.contacts.contact import model_words
 from stribeck.curves.result import with_contact
 from stribeck.explorer.answer import Answer
 from stribeck.explorer.curves import hersey_scale
-from stribeck.explorer.inputs.inputs import Inputs, refuse_files
+from stribeck.explorer.inputs.inputs import Inputs
 from stribeck.files.datasets import write_csv
 from stribeck.files.toml import parse_toml, toml_text
 from stribeck.plot.curve import add_curves
 from stribeck.plot.style import INK, SERIES
 from stribeck.quantities.units import InputError
-
-MAX_NAME_LENGTH = 80  # Letters of the name of a downloaded file.
 
 KINDS = {
     "Picture of the curve (PNG)": "curve.png",
@@ -39,17 +35,6 @@ KINDS = {
 """Downloads: label and ending."""
 
 
-def read_case(name: str, content: bytes) -> Case:
-    """Return a case from the content of its file."""
-    path = Path(shown_name(name))
-    tables = parse_toml(content, path)
-    try:
-        refuse_files(tables, f"start with 'stribeck explore {path}', or write its rows into the case")
-    except InputError as problem:
-        raise InputError(f"{path}: {problem}") from None
-    return check_case(tables, path)
-
-
 @functools.cache
 def examples() -> dict[str, Path]:
     """Return the examples that come with the package, by their titles."""
@@ -61,14 +46,6 @@ def examples() -> dict[str, Path]:
         if "contact" in tables and not {"fit", "vary"} & tables.keys():
             found[str(tables.get("title", path.stem))] = path
     return found
-
-
-def shown_name(name: str) -> str:
-    """Return the name of a file as sentences and legends show it: its last part, in one line, at most 80 characters."""
-    last = name.replace("\\", "/").rstrip("/").rpartition("/")[2]
-    plain = "".join(sign if sign.isprintable() else "_" for sign in last).strip()
-    plain = "file" if plain in ("", ".", "..") else plain
-    return plain if len(plain) <= MAX_NAME_LENGTH else f"{plain[: MAX_NAME_LENGTH - 20]}...{plain[-17:]}"
 
 
 def name_of(kind: str, title: str) -> str:

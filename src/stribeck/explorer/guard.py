@@ -6,17 +6,11 @@ Everything that arrives, pages, sockets and files, passes here first.
 from __future__ import annotations
 
 import hmac
-import ipaddress
-from collections.abc import Awaitable, Callable, MutableMapping
-from http.cookies import CookieError, SimpleCookie
-from typing import Any
-from urllib.parse import parse_qsl, urlencode
+from urllib.parse import urlencode
 
-from stribeck.quantities.units import InputError, show
-
-Scope = MutableMapping[str, Any]
-Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
-Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
+from starlette.requests import HTTPConnection
+from starlette.responses import PlainTextResponse, Response
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 # Names of this machine in the header Host; another name that points here belongs to somebody else's page.
 LOCAL_HOSTS = ("127.0.0.1", "localhost", "[::1]")
@@ -44,20 +38,6 @@ WITHOUT_TOKEN = (
 )
 
 
-def check_host(host: str) -> str:
-    """Return an address of this machine; refuse one that others reach."""
-    try:
-        own = host == "localhost" or ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        own = False
-    if not own:
-        raise InputError(
-            f"host = {show(host)} is not a local address; the explorer is served on 127.0.0.1, ::1 or localhost only. "
-            "To use it from another machine, forward its port: ssh -L 8765:127.0.0.1:8765 NAME-OF-THIS-MACHINE."
-        )
-    return host
-
-
 class TooLarge(Exception):  # noqa: N818
     """A request went on beyond its limit."""
 
@@ -65,7 +45,7 @@ class TooLarge(Exception):  # noqa: N818
 class Guard:
     """ASGI application around another one, which lets pass what belongs to the user's own browser."""
 
-    def __init__(self, app: Any, token: str, port: int) -> None:
+    def __init__(self, app: ASGIApp, token: str, port: int) -> None:
         self.app, self.token = app, token
         self.cookie = f"stribeck-explorer-{port}"
 
@@ -74,50 +54,39 @@ class Guard:
         if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
             return
-        headers: dict[str, list[str]] = {}
-        for name, value in scope["headers"]:
-            headers.setdefault(name.decode("latin-1").lower(), []).append(value.decode("latin-1"))
-        refusal = self.refusal(headers)
-        if refusal is None and self.has_token(scope):
-            await _answer(scope, send, 303, "", self._with_cookie(scope))
-            return
-        refusal = refusal or self.without_cookie(headers) or _too_large(headers)
-        if refusal is not None:
-            await _answer(scope, send, *refusal)
-            return
-        await self.pass_on(scope, receive, send, headers["host"][0])
+        asked = HTTPConnection(scope)
+        answer = self.answer_to(asked)
+        if answer is None:
+            await self.pass_on(scope, receive, send, asked.headers["host"])
+        elif scope["type"] == "websocket":
+            await send({"type": "websocket.close", "code": 1008})
+        else:
+            await answer(scope, receive, protecting(send, "127.0.0.1"))
 
-    def refusal(self, headers: dict[str, list[str]]) -> tuple[int, str] | None:
-        """Return why a request does not come from this machine, or None."""
-        hosts = headers.get("host", [])
+    def answer_to(self, asked: HTTPConnection) -> Response | None:
+        """Return what is answered in the place of the application; None to a request that passes."""
+        hosts = asked.headers.getlist("host")
         if len(hosts) != 1 or _name(hosts[0]) not in LOCAL_HOSTS:
-            return 400, "The explorer answers only to 127.0.0.1 and localhost.\n"
-        if any(origin != f"http://{hosts[0]}" for origin in headers.get("origin", [])):
-            return 403, "The explorer answers only to its own page.\n"
-        return None
-
-    def has_token(self, scope: Scope) -> bool:
-        """Return whether a page is asked for with the token in its address."""
-        if scope["type"] != "http" or scope["path"] != "/":
-            return False
-        return any(key == "token" and self._is_token(value) for key, value in _query(scope))
-
-    def without_cookie(self, headers: dict[str, list[str]]) -> tuple[int, str] | None:
-        """Return what to say to a browser that never had the token, or None."""
-        for text in headers.get("cookie", []):
-            try:
-                found = SimpleCookie(text).get(self.cookie)
-            except CookieError:
-                continue
-            if found is not None and self._is_token(found.value):
-                return None
-        return 403, WITHOUT_TOKEN
+            return PlainTextResponse("The explorer answers only to 127.0.0.1 and localhost.\n", 400)
+        if any(origin != f"http://{hosts[0]}" for origin in asked.headers.getlist("origin")):
+            return PlainTextResponse("The explorer answers only to its own page.\n", 403)
+        query = asked.query_params.multi_items()
+        is_page = asked.scope["type"] == "http" and asked.scope["path"] == "/"
+        if is_page and any(key == "token" and self._is_token(value) for key, value in query):
+            rest = urlencode([(key, value) for key, value in query if key != "token"])
+            cookie = f"{self.cookie}={self.token}; Path=/; HttpOnly; SameSite=Lax"
+            return Response(None, 303, {"location": f"/{'?' if rest else ''}{rest}", "set-cookie": cookie})
+        if not self._is_token(asked.cookies.get(self.cookie, "")):
+            return PlainTextResponse(WITHOUT_TOKEN, 403)
+        sizes = asked.headers.getlist("content-length")
+        is_small = all(size.isdecimal() and int(size[:20]) <= MAX_REQUEST_BYTES for size in sizes)
+        return None if is_small else too_large()
 
     async def pass_on(self, scope: Scope, receive: Receive, send: Send, host: str) -> None:
         """Let the application answer; count what it receives, and add headers to what it sends."""
         size, begun = 0, False
 
-        async def counted() -> MutableMapping[str, Any]:
+        async def counted() -> Message:
             nonlocal size
             message = await receive()
             if message["type"] == "http.request":
@@ -126,58 +95,40 @@ class Guard:
                     raise TooLarge
             return message
 
-        async def protected(message: MutableMapping[str, Any]) -> None:
+        async def noticed(message: Message) -> None:
             nonlocal begun
-            if message["type"] == "http.response.start":
-                begun = True
-                message["headers"] = [*message.get("headers", []), *_protection(host)]
+            begun = True
             await send(message)
 
         try:
-            await self.app(scope, counted, protected)
+            await self.app(scope, counted, protecting(noticed, host))
         except TooLarge:
             if not begun:
-                await _answer(scope, send, *TOO_LARGE_RESPONSE)
+                await too_large()(scope, receive, protecting(send, host))
 
     def _is_token(self, text: str) -> bool:
         return hmac.compare_digest(text.encode("utf-8", "replace"), self.token.encode())
 
-    def _with_cookie(self, scope: Scope) -> list[tuple[bytes, bytes]]:
-        rest = urlencode([(key, value) for key, value in _query(scope) if key != "token"])
-        cookie = f"{self.cookie}={self.token}; Path=/; HttpOnly; SameSite=Lax"
-        return [(b"location", f"/{'?' if rest else ''}{rest}".encode()), (b"set-cookie", cookie.encode())]
+
+def protecting(send: Send, host: str) -> Send:
+    """Return what sends with the headers that protect the page."""
+    added = {**HEADERS, "content-security-policy": POLICY.format(host=host)}
+    protection = [(name.encode(), value.encode("latin-1")) for name, value in added.items()]
+
+    async def protected(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            message["headers"] = [*message.get("headers", []), *protection]
+        await send(message)
+
+    return protected
 
 
-TOO_LARGE_RESPONSE = (413, f"A file may have at most {MAX_REQUEST_BYTES // 1_000_000} MB.\n")
-
-
-def _too_large(headers: dict[str, list[str]]) -> tuple[int, str] | None:
-    sizes = headers.get("content-length", [])
-    return TOO_LARGE_RESPONSE if any(not size.isdecimal() or int(size[:20]) > MAX_REQUEST_BYTES for size in sizes) else None
+def too_large() -> Response:
+    """Return the answer to a request beyond its limit."""
+    return PlainTextResponse(f"A file may have at most {MAX_REQUEST_BYTES // 1_000_000} MB.\n", 413)
 
 
 def _name(host: str) -> str:
     """Return the name in a header Host without its port."""
     name, _, port = host.rpartition(":")
     return name.lower() if name and port.isdecimal() else host.lower()
-
-
-def _query(scope: Scope) -> list[tuple[str, str]]:
-    try:
-        return parse_qsl(scope["query_string"].decode("latin-1"), keep_blank_values=True)
-    except ValueError:
-        return []
-
-
-def _protection(host: str) -> list[tuple[bytes, bytes]]:
-    headers = {**HEADERS, "content-security-policy": POLICY.format(host=host)}
-    return [(name.encode(), value.encode("latin-1")) for name, value in headers.items()]
-
-
-async def _answer(scope: Scope, send: Send, status: int, text: str, headers: list[tuple[bytes, bytes]] | None = None) -> None:
-    if scope["type"] == "websocket":
-        await send({"type": "websocket.close", "code": 1008})
-        return
-    start = [(b"content-type", b"text/plain; charset=utf-8"), *_protection("127.0.0.1"), *(headers or [])]
-    await send({"type": "http.response.start", "status": status, "headers": start})
-    await send({"type": "http.response.body", "body": text.encode()})

@@ -1,26 +1,32 @@
-"""The server of the page: on this machine only, on a free port, with all that the page needs."""
+"""The server of the page: on this machine only, on a free port, with all that the page needs.
+
+Its page of words has every input and number, in the words of the package's tables, to which the page's helps link.
+"""
 
 from __future__ import annotations
 
+import ipaddress
 import os
 import secrets
 import socket
 import sys
-from functools import partialmethod
+from functools import cache, partialmethod
+from html import escape
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from stribeck.cases.reading import load_case
-from stribeck.explorer.downloads import KINDS, examples, name_of, shown_name
-from stribeck.explorer.guard import Guard, check_host
-from stribeck.explorer.inputs.inputs import Inputs, from_case
+from stribeck.explorer.downloads import KINDS, examples, name_of
+from stribeck.explorer.inputs.choices import CHOICES, help_of_choice, typical
+from stribeck.explorer.inputs.inputs import FIELDS, GROUP_FIELDS, Inputs, from_case, help_of
 from stribeck.explorer.inputs.url import MAX_URL_LENGTH, check_length, decode
-from stribeck.explorer.pools import FILES, run
-from stribeck.explorer.words import words_page
+from stribeck.explorer.table import MEANINGS, TRANSITION_HELP, TRANSITION_LABELS, state_rows
+from stribeck.explorer.uploads import shown_name
 from stribeck.files.writing import MissingExtraError
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, show
+from stribeck.solver.solve import solve
 
 if TYPE_CHECKING:
     from nicegui.server import Server
@@ -93,7 +99,8 @@ def build(start: Inputs, port: int, token: str) -> None:
     from starlette.requests import Request
     from starlette.responses import Response
 
-    from stribeck.explorer.tab import TABS, Tab
+    from stribeck.explorer.guard import Guard
+    from stribeck.explorer.tab import FILES, TABS, Tab, run
 
     app.add_middleware(Guard, token=token, port=port)
     own = {
@@ -140,6 +147,20 @@ def example() -> Inputs:
     return Inputs.of({name: tables[name] for name in ("title", "contact")})
 
 
+def check_host(host: str) -> str:
+    """Return an address of this machine; refuse one that others reach."""
+    try:
+        own = host == "localhost" or ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        own = False
+    if not own:
+        raise InputError(
+            f"host = {show(host)} is not a local address; the explorer is served on 127.0.0.1, ::1 or localhost only. "
+            "To use it from another machine, forward its port: ssh -L 8765:127.0.0.1:8765 NAME-OF-THIS-MACHINE."
+        )
+    return host
+
+
 def listen(wanted: int | None, host: str = HOST) -> socket.socket:
     """Return a socket that listens on a port of this machine on which nobody else did."""
     if wanted is not None and not 1 <= wanted <= 65535:
@@ -157,3 +178,35 @@ def listen(wanted: int | None, host: str = HOST) -> socket.socket:
         return found
     which = f"port = {wanted} is" if wanted is not None else f"ports {DEFAULT_PORTS[0]} to {DEFAULT_PORTS[-1]} are"
     raise InputError(f"{which} not free or not allowed; choose another with --port.")
+
+
+ROUGHLY = 1e-3  # Relative tolerance of the states whose numbers are listed.
+
+STYLE = (
+    "body{font:15px/1.5 system-ui,sans-serif;max-width:46em;margin:2em auto;padding:0 1em}"
+    "dt{font-weight:600}:target{background:#e2eff8}"
+)
+
+
+@cache
+def words_page() -> str:
+    """Return the page as HTML, with an anchor for each name."""
+    inputs = {name: (row.label, help_of(name, geometry)) for geometry, rows in FIELDS.items() for name, row in rows.items()}
+    groups = {name: (row.label, help_of(name, "line")) for name, row in GROUP_FIELDS.items()}
+    states = [solve(typical(geometry).contact, rtol=ROUGHLY) for geometry in FIELDS]
+    numbers = {row.key: (row.label, row.help) for state in states for row in state_rows(state, "balanced")}
+    numbers |= {f"speed_factor_{name}": (label, TRANSITION_HELP) for name, label in TRANSITION_LABELS.items()}
+    regimes = {name: (name, meaning) for name, meaning in MEANINGS.items()}
+    lists = {name: (choice.label, help_of_choice(name, ())) for name, choice in CHOICES.items()}
+    parts = {"Inputs": inputs, "Model": lists, "Dimensionless groups": groups, "Numbers": numbers, "Regimes": regimes}
+    html = "".join(
+        f"<h2>{title}</h2><dl>{''.join(_entry(name, *words) for name, words in found.items())}</dl>"
+        for title, found in parts.items()
+    )
+    head = '<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>Words of the explorer</title>'
+    body = f"<body><h1>Words of the explorer</h1>{html}</body>"
+    return f'<!doctype html><html lang="en"><head>{head}<style>{STYLE}</style></head>{body}</html>'
+
+
+def _entry(name: str, label: str, words: str) -> str:
+    return f'<dt id="{name}">{escape(label)}</dt><dd>{escape(words)} <code>{name}</code></dd>'

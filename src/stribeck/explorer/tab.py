@@ -12,6 +12,7 @@ import inspect
 import time
 import weakref
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import PurePath
 from typing import Any
@@ -23,17 +24,45 @@ from stribeck.explorer import downloads as files
 from stribeck.explorer.answer import Answer, Answerer
 from stribeck.explorer.charts import residual_chart
 from stribeck.explorer.inputs import choices, inputs, url
-from stribeck.explorer.inputs.history import History
-from stribeck.explorer.inputs.inputs import Inputs
-from stribeck.explorer.measured import MEANINGS, Measured, fit_measured, free_inputs
+from stribeck.explorer.inputs.inputs import History, Inputs
 from stribeck.explorer.page import UPDATING_TEXT, Page, Problems, form_of, parts_of
-from stribeck.explorer.pools import FILES, Threads, run
 from stribeck.explorer.table import without_rtol
-from stribeck.explorer.uploads import SCAN_ENDINGS, Scan, read_file, with_scan
+from stribeck.explorer.uploads import MEANINGS, SCAN_ENDINGS, Measured, Scan, fit_measured, free_inputs, read_file, with_scan
 from stribeck.files.writing import MissingExtraError
 from stribeck.fits.measurements import CHANGE_READ
+from stribeck.numerics.ending import ended_by
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve_error import SolveError
+
+FILES = ThreadPoolExecutor(2, "explorer-files")
+"""Of all pages: addresses and files."""
+
+
+class Threads:
+    """The threads of one page, which wait for no other page; they start when they are first needed."""
+
+    def __init__(self) -> None:
+        self.live = ThreadPoolExecutor(1, "explorer-live")
+        self.slow = ThreadPoolExecutor(1, "explorer-slow")
+
+    def close(self) -> None:
+        """Drop what waits, and end with what runs."""
+        for pool in (self.live, self.slow):
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+async def run(
+    pool: ThreadPoolExecutor, function: Callable[..., Any], *arguments: Any, watch: Callable[[], object] = lambda: None
+) -> Any:
+    """Return what a function gives, computed in a thread; what ``watch`` raises between two steps of iterations ends it."""
+
+    def watched() -> Any:
+        watch()
+        with ended_by(watch):
+            return function(*arguments)
+
+    return await asyncio.get_running_loop().run_in_executor(pool, watched)
+
 
 # Open pages, by the names of their clients; a page that is closed drops out.
 TABS: weakref.WeakValueDictionary[str, Tab] = weakref.WeakValueDictionary()

@@ -1,4 +1,4 @@
-"""The inputs of a tab: one case, whose tables are its form, its address, its saved file and each step of undo.
+"""The inputs of a tab: one case, whose tables are its form, its address, its saved file and each step of undo and redo.
 
 The fields are the rows of the package's tables of inputs. Every change makes new inputs from old ones, or raises the sentence
 that the command line prints; nothing is half changed.
@@ -420,3 +420,34 @@ def _factor(inputs: Inputs, name: str) -> float:
 @functools.lru_cache(maxsize=1000)
 def _unit_factor(dimension: str, unit: str) -> float:
     return to_si(f"1 {unit}", dimension, "unit")
+
+
+MAX_STEPS = 100  # Steps of undo that are kept.
+
+
+class History:
+    """What a page has shown at rest, and where in it the page is."""
+
+    def __init__(self, start: Inputs) -> None:
+        self.states = [start]
+        self.place = 0
+
+    def rest(self, now: Inputs) -> None:
+        """Take inputs that have come to rest; what was undone before is then gone, unless these are the same."""
+        if now == self.states[self.place]:
+            return
+        self.states = [*self.states[: self.place + 1], now][-MAX_STEPS:]
+        self.place = len(self.states) - 1
+
+    def step(self, way: int, now: Inputs) -> Inputs | None:
+        """Return the inputs one step back or forth, or None if there are none."""
+        self.rest(now)
+        if not 0 <= self.place + way < len(self.states):
+            return None
+        self.place += way
+        return self.states[self.place]
+
+    @property
+    def steps(self) -> dict[str, bool]:
+        """Whether there is something to undo and to redo."""
+        return {"undo": self.place > 0, "redo": self.place < len(self.states) - 1}
