@@ -1,14 +1,20 @@
 """The atlas: solved states of a box of groups as smooth functions."""
 
-from stribeck.atlas.friction_reading import (
+from stribeck.atlas.lookup import friction_terms
+from stribeck.atlas.reading import (
+    central_gap,
+    contact_load_share,
+    fluid_load_share,
+    flux_gap,
     friction,
     friction_derivatives,
     friction_parts,
-    friction_terms,
+    info,
+    minimum_gap,
+    offset,
     shares_and_friction,
     viscous_friction,
 )
-from stribeck.atlas.reading import central_gap, contact_load_share, fluid_load_share, flux_gap, info, minimum_gap, offset
 from stribeck.atlas.tables import BOX, covers, for_groups, holds_for
 
 __all__ = [

@@ -1,72 +1,43 @@
-"""What the table of states holds at them: functions inside the box, and what the friction is made of with its derivatives."""
+"""What the tables hold at states inside their boxes: their functions, and what friction is made of, with derivatives."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple, TypeVar
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.atlas.drag import DRAG
 from stribeck.atlas.grid import MAX_L_OF_HEAVY, MAX_ROUGHNESS_OF_HEAVY
-from stribeck.atlas.table import Values
-from stribeck.atlas.tables import BOX_RTOL, TableRow, table_for
+from stribeck.atlas.table import FRICTION_RADIUS
+from stribeck.atlas.tables import BOX_RTOL, table_for
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
-from stribeck.contacts.groups import Groups
-from stribeck.numerics.dual import Dual, slope_of
+from stribeck.contacts.groups import Geometry, Groups
+from stribeck.numerics.dual import Dual, chained, value_of
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.docstrings import complete_docstring
-from stribeck.quantities.units import InputError
-
-Value = float | Array
+from stribeck.quantities.units import InputError, checked_kind
+from stribeck.solids import hertz
 
 # Names of functions in the tables
 ODDS, CENTRAL, MINIMUM, FLUX, DEFLECTION = "log_odds", "central_gap", "minimum_gap", "flux_gap", "deflection"
 
-# What docstrings say of the arguments of all functions of states.
-ARGUMENTS = {
-    "groups": "Groups\n    The states [-]; arrays broadcast.",
-    "boundary_friction": "float\n    Friction coefficient of the dry contact [-].",
-    "beta": "float\n    Coefficient of the contact law [-].",
-    "definition": """{"balanced", "published"}
-    Definition of the viscous friction, theory.md, section 6.""",
-    "slide_to_roll": "float\n    Slide-to-roll ratio of a ball [-].",
-    "wetted_radius": """float or ndarray
-    Radius of the disc of liquid around a ball, above 1 [a]; infinite where the whole ball is immersed.""",
-}
-RAISES = "InputError\n    If a state is outside the box of its table, or an argument is wrong."
-
-Function = TypeVar("Function", bound=Callable[..., Any])
-
-
-def documented(returns: str) -> Callable[[Function], Function]:
-    """Return a decorator that completes the docstring of a function of states."""
-
-    def complete(function: Function) -> Function:
-        kind, _, meaning = returns.rpartition(": ")
-        value = f"{kind or 'float or ndarray'}\n    {meaning}"
-        function.__doc__ = complete_docstring(function, ARGUMENTS, value, RAISES)
-        return function
-
-    return complete
+DRY_OFFSET: dict[Geometry, float] = {"line": hertz.HERTZ_OFFSET, "point": -1.0}  # Of the dry smooth contact [u_Hz]
 
 
 class Lookup(NamedTuple):
-    """Values read off a table, as flat arrays over the states."""
+    """What a table has of states: flat arrays over them, or duals where derivatives are wanted."""
 
-    table: TableRow
-    speed: Array
-    load: Array
-    values: Values
+    speed: Any
+    load: Any
+    values: list[Any]
 
 
 @one_blas_thread
 def look_up(groups: Groups, names: tuple[str, ...], slopes: int = 0) -> Lookup:
-    """Return functions of the table of states inside its box, and 0, 1 or 3 of their derivatives, see :class:`Values`."""
+    """Return functions of the table of states inside its box, with 0, 1 or 3 derivatives by the logarithms of the groups."""
     held = table_for(groups)
     box, grid = held.box, held.grid
     if missing := [name for name in names if name not in held.functions]:
@@ -94,76 +65,72 @@ def look_up(groups: Groups, names: tuple[str, ...], slopes: int = 0) -> Lookup:
             f"{grid.load_at(grid.resting):g}. Use solve."
         )
     functions = tuple(held.functions.index(name) for name in names)
-    found = held.table.read(functions, log_speed, np.where(closing, MAX_L_OF_HEAVY, log_load), inside, slopes)
+    found, *by = held.table.read(functions, log_speed, np.where(closing, MAX_L_OF_HEAVY, log_load), inside, slopes)
     # At rest the load shifts the gap and does nothing else.
     shift = 0.5 * inside[closing] * (log_load[closing] - MAX_L_OF_HEAVY)
     dry = (speed == 0) & (kappa == 0)
     for row, name in enumerate(names):
         if name in (CENTRAL, MINIMUM):
-            found.values[row, closing] = np.log(np.exp(found.values[row, closing]) + shift)
+            found[row, closing] = np.log(np.exp(found[row, closing]) + shift)
         if name == ODDS:
-            found.values[row, closing] = -math.inf
-        found.values[row, dry] = DRAG[held.geometry].dry_offset if name == DEFLECTION else -math.inf
-    return Lookup(held, speed, load, found)
+            found[row, closing] = -math.inf
+        found[row, dry] = DRY_OFFSET[held.geometry] if name == DEFLECTION else -math.inf
+    if not slopes:
+        return Lookup(speed, load, list(found))
+    if slopes == 3:  # by ln(speed), L and ln(kappa), with L = -factor ln(load) and kappa = roughness/load^exponent
+        by[1] = -grid.load_factor * by[1] - groups.scaling.roughness_exponent * by[2]
+    axes = np.eye(slopes, 2)[..., None]
+    return Lookup(Dual(speed, axes[:, 0] * speed), Dual(load, axes[:, 1] * load), [*map(Dual, found, np.stack(by, axis=1))])
 
 
 class FrictionReading(NamedTuple):
-    """Contact share and viscous parts of the friction of states, flat arrays, with derivatives by the logarithms of groups."""
+    """What a table has of the friction of states: flat arrays over them, or duals where derivatives are wanted."""
 
-    speed: Array
-    load: Array
-    odds: Array
-    contact: Array
-    contact_slopes: Array
-    parts: dict[str, Array]
-    part_slopes: dict[str, Array]
+    speed: Any
+    load: Any
+    odds: Any
+    parts: dict[str, Any]  # Observables that the viscous friction takes, by name
+
+    @property
+    def contact(self) -> Any:
+        """Load share of the asperities."""
+        return contact_share(self.odds)
 
 
 def read_friction(groups: Groups, definition: Definition, slopes: int = 0) -> FrictionReading:
-    """Return contact share and parts of the viscous friction of states, and the first 0, 1 or 3 of their derivatives."""
-    drag = DRAG[groups.geometry]
-    names = (ODDS, *drag.names(definition))
-    held, speed, load, found = look_up(groups, names, slopes)
-    by: list[Array | None] = [None] * len(names)
-    if found.slopes is not None and slopes == 1:
-        by = list(found.slopes[0][:, None])
-    elif found.slopes is not None:
-        # By ln(speed), L and ln(kappa), with L = -factor ln(load) and kappa = roughness/load^exponent.
-        by_speed, by_log_load, by_kappa = found.slopes
-        by_load = -held.grid.load_factor * by_log_load - groups.scaling.roughness_exponent * by_kappa
-        by = list(np.stack([by_speed, by_load, by_kappa], axis=1))
-    logs = {name: (found.values[row], by[row]) for row, name in enumerate(names) if row > 0}
-    parts = drag.parts(logs, speed, load, far_film(groups.model))
-    contact = contact_share(found.values[0])
-    contact_slopes = np.empty((0, 0)) if by[0] is None else -contact * (1 - contact) * by[0]
-    part_slopes = {name: slope for name, (_, slope) in parts.items() if slope is not None}
-    values = {name: value for name, (value, _) in parts.items()}
-    return FrictionReading(speed, load, found.values[0], contact, contact_slopes, values, part_slopes)
+    """Return what the friction of states is made of, with 0, 1 or 3 derivatives by the logarithms of the groups."""
+    if groups.geometry == "line":
+        name = f"viscous_{definition}"
+        speed, load, (odds, log) = look_up(groups, (ODDS, name), slopes)
+        return FrictionReading(speed, load, odds, {name: np.sqrt(load) * speed * np.exp(log)})
+    speed, load, (odds, *logs) = look_up(groups, (ODDS, "couette", "poiseuille", "published"), slopes)
+    couette, poiseuille, published = (speed * np.exp(log) for log in logs)
+    film, beyond = far_film(groups.model), speed * math.log(FRICTION_RADIUS)
+    parts = {"J_couette": couette - film.couette * beyond, "J_poiseuille": poiseuille - film.poiseuille * beyond}
+    return FrictionReading(speed, load, odds, parts | {"J_pcx": couette + poiseuille - published})
 
 
-def slopes_of(
-    groups: Groups, reading: FrictionReading, inputs: Mapping[str, Any], definition: Definition
-) -> tuple[Array, Array]:
-    """Return the derivatives of contact share and viscous friction that were read, zero at rest."""
-    contact = reading.contact_slopes.copy()
-    parts = {name: Dual(value, reading.part_slopes[name]) for name, value in reading.parts.items()}
-    speed, load = (Dual(group, np.eye(len(contact), 2)[:, axis, None] * group) for axis, group in enumerate(reading[:2]))
-    rule = RULES[groups.geometry]
-    viscous = np.array(slope_of(rule.viscous(parts, speed, load, inputs_for(groups, inputs), definition)))
-    for found in (contact, viscous):
-        found[:, reading.speed == 0] = 0.0
-    return contact, viscous
+def friction_terms(groups: Groups, inputs: Mapping[str, Any], definition: Definition, slopes: int = 0) -> tuple[Any, Any]:
+    """Return contact load share and viscous friction of the flattened states, by inputs that may be arrays with derivatives.
+
+    The ``inputs`` are what the friction rule of the geometry takes, by name; they are not checked.  With ``slopes`` = 3 both
+    have their derivatives by ln(speed), ln(load) and ln(roughness).
+    """
+    checked_kind("groups", groups, Groups, "Groups(speed, load, roughness)")
+    reading = read_friction(groups, definition, slopes)
+    return reading.contact, viscous_of(groups, reading, inputs, definition)
 
 
-def inputs_for(groups: Groups, inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what the friction rule takes beside states as flat arrays over them, and how their film ends far away."""
-    return {name: flat(groups, value) for name, value in inputs.items()} | {"far": far_film(groups.model)}
+def viscous_of(groups: Groups, reading: FrictionReading, inputs: Mapping[str, Any], definition: Definition) -> Any:
+    """Return the viscous friction of what was read, by what the friction rule takes beside states."""
+    arrays = {name: flat(groups, value) for name, value in inputs.items()} | {"far": far_film(groups.model)}
+    return RULES[groups.geometry].viscous(reading.parts, reading.speed, reading.load, arrays, definition)
 
 
 def flat(groups: Groups, value: Any) -> Any:
-    """Return a number or an array that broadcasts with groups as a flat array over their states, and its derivative too."""
+    """Return a number or an array that broadcasts with groups as a flat array over their states, its derivatives too."""
     if isinstance(value, Dual):
-        return Dual(flat(groups, value.value), flat(groups, value.slope))
+        return Dual(flat(groups, value.value), np.stack([flat(groups, slope) for slope in value.slope]))
     return np.broadcast_to(np.asarray(value), groups.shape).ravel()
 
 
@@ -179,11 +146,7 @@ def _check(name: str, values: Array, low: float, high: float, zero: bool) -> Non
         )
 
 
-def contact_share(odds: Array) -> Array:
-    """Return the contact share of ln(fluid over contact share); the fluid share of its negative."""
-    return np.asarray(1 / (1 + np.exp(odds)))
-
-
-def reshape_to_groups(groups: Groups, values: Array) -> Value:
-    """Return flat values in the shape of the groups, a number of a single state."""
-    return float(values[0]) if groups.shape == () else values.reshape(groups.shape)
+def contact_share(odds: Any) -> Any:
+    """Return the contact share of ln(fluid over contact share), with its derivatives; the fluid share of its negative."""
+    share = np.asarray(1 / (1 + np.exp(value_of(odds))))
+    return chained(share, [odds], [-share * (1 - share)])

@@ -47,14 +47,6 @@ CHUNK_STATES = 1024  # States that are summed at once: their polynomials then fi
 
 
 @dataclass(frozen=True, eq=False)
-class Values:
-    """Values of functions of a table at many states."""
-
-    values: Array  # The wanted of :data:`LINE_FUNCTIONS`; where no asperities are left the first is infinite
-    slopes: Array | None  # Derivatives of the values by ln(speed), and by -ln(load) and ln(relative roughness), if wanted
-
-
-@dataclass(frozen=True, eq=False)
 class Block:
     """Coefficients of one block: ``coefficients[t, f, pair]`` is of the polynomials t, ``first[pair]``, ``second[pair]``."""
 
@@ -119,8 +111,12 @@ class Table:
         found = (breaks_from(matrix @ products.reshape(BREAK_TERMS**2, -1)) for products in (by_k, by_y))
         return next(found), next(found)
 
-    def read(self, functions: tuple[int, ...], log_speed: Array, log_load: Array, kappa: Array, slopes: int) -> Values:
-        """Return functions at states inside the box, and 0, 1 (by the speed) or 3 derivatives, as flat arrays."""
+    def read(self, functions: tuple[int, ...], log_speed: Array, log_load: Array, kappa: Array, slopes: int) -> Array:
+        """Return functions at states inside the box, and 0, 1 or 3 derivatives, shape (1 + slopes, functions, states).
+
+        The derivatives are by ln(speed), -ln(load) and ln(relative roughness); where no asperities are left the first function
+        is infinite.
+        """
         # A ``log_speed`` of -inf is rest, ``kappa`` 0 a smooth surface.
         states, last = log_speed.size, self.grid.pieces * SEGMENTS
         block = np.full(states, last)
@@ -135,23 +131,22 @@ class Table:
                 )
                 if found_chain is not None:
                     chain[:, part] = found_chain
-        found = self._sums(functions, block, coordinates, slopes)
-        film = block == last
+        found, film = self._sums(functions, block, coordinates, slopes), block == last
         if film.any():
             found[..., film] = self._film(functions, log_speed[film], slopes)
-        by_state = None
-        if slopes:
-            by_state = np.empty((slopes, len(functions), states))
-            by_state[0] = chain[0] * found[1]
-        if by_state is not None and slopes == 3:
+            chain[:, film], chain[:1, film] = 0.0, 1.0
+        if slopes == 3:
             _, t_L, y_L, t_kappa, y_kappa, k_kappa = chain
-            by_state[1] = t_L * found[1] + y_L * found[3]
-            by_state[2] = t_kappa * found[1] + y_kappa * found[3] + k_kappa * found[2]
-        if by_state is not None:
-            by_state[:, :, film] = 0.0
-            by_state[0][:, film] = found[1][:, film]
-        self._add_power_of_speed(functions, found[0], by_state, log_speed, (block % SEGMENTS == 0) & ~film)
-        return Values(found[0], by_state)
+            by_t, by_k, by_y = found[1:]
+            found[2:] = t_L * by_t + y_L * by_y, t_kappa * by_t + y_kappa * by_y + k_kappa * by_k
+        if slopes:
+            found[1] *= chain[0]
+        if 0 in functions:  # below b_1 the power of the speed was taken off the odds
+            row, power, early = functions.index(0), float(self.grid.power), (block % SEGMENTS == 0) & ~film
+            found[0, row] += np.where(early, power * log_speed, 0.0)
+            if slopes:
+                found[1, row] += np.where(early, power, 0.0)
+        return found
 
     def _sums(self, functions: tuple[int, ...], block: Indices, coordinates: Array, slopes: int) -> Array:
         """Return the sums of :meth:`Block.sum` for states in any order; those on no block are left open."""
@@ -227,16 +222,6 @@ class Table:
                     slope = self.film[number, :, function - 1] @ chebyshev_slopes(x[here], terms)
                     found[1, row, here] = slope * 2 * pieces / (high - low)
         return found
-
-    def _add_power_of_speed(
-        self, functions: tuple[int, ...], values: Array, slopes: Array | None, log_speed: Array, early: Array
-    ) -> None:
-        """Put back, in fresh arrays, the power of speed that was taken off the odds below b_1."""
-        if 0 in functions:
-            row, power = functions.index(0), float(self.grid.power)
-            values[row] += np.where(early, power * log_speed, 0.0)
-            if slopes is not None:
-                slopes[0, row] += np.where(early, power, 0.0)
 
 
 def unpack(grid: Grid, data: Any) -> Table:

@@ -66,7 +66,7 @@ class AtlasReadings:
 
     def friction_terms(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
         """Return the friction of asperities and fluid, their sum and its error, shape (n, 4)."""
-        share, viscous = atlas.friction_terms(self.groups, self.source.inputs(self.groups, beta), definition)
+        share, viscous = atlas.friction_terms(self.groups, self.source.inputs(self.groups.load, beta), definition)
         contact = boundary_friction * self.source.sliding * share
         total = contact + viscous
         return np.stack([contact, viscous, total, self.source.rtol * np.abs(total)], axis=1)
@@ -122,14 +122,9 @@ class AtlasSource(Source):
         """Return the derivatives of the friction by the coordinate."""
         boundary_friction, beta, definition = coefficients
         groups = self._groups(s)
-        inputs = self.inputs(groups, beta)
-        motion = {name: value for name, value in inputs.items() if name != "beta"}
-        slopes = atlas.friction_derivatives(groups, boundary_friction, beta, definition, **motion)
-        found = np.tensordot(self.coordinate.direction, slopes, 1)
-        for name, power in self._moving.items():
-            moved = {**inputs, name: Dual(inputs[name], inputs[name])}
-            found = found + power * slope_of(atlas.friction_terms(groups, moved, definition)[1])
-        return np.asarray(found)
+        load = Dual(groups.load, np.eye(3)[1][:, None] * groups.load)
+        contact, viscous = atlas.friction_terms(groups, self.inputs(load, beta), definition, slopes=3)
+        return np.asarray(self.coordinate.direction @ slope_of(boundary_friction * self.sliding * contact + viscous))
 
     def length_at(self, s: float) -> float:
         """Return the length over which the error of a table may turn."""
@@ -149,17 +144,10 @@ class AtlasSource(Source):
         rule = RULES[self.table.geometry]
         return float(rule.sliding_factor(self._groups(np.log([self.low])), rule.of_contact(self.coordinate.contact)))
 
-    def inputs(self, groups: Groups, beta: float) -> dict[str, Any]:
-        """Return the arguments of the friction other than the groups; a length in Hertz radii changes with the load."""
-        found: dict[str, Any] = {**RULES[self.table.geometry].of_contact(self.coordinate.contact), "beta": beta}
-        for name, power in self._moving.items():
-            assert self.coordinate.contact is not None
-            found[name] = found[name] * (groups.load / self.coordinate.contact.groups.load) ** power
+    def inputs(self, load: Any, beta: float) -> dict[str, Any]:
+        """Return the arguments of the friction other than the groups, at the load group, which may have derivatives."""
+        contact, rule = self.coordinate.contact, RULES[self.table.geometry]
+        found: dict[str, Any] = {**rule.of_contact(contact), "beta": beta}
+        if contact is not None and self.coordinate.over == "load":  # a length in Hertz radii changes with it
+            found |= {name: found[name] * (load / contact.groups.load) ** by["load"] for name, by in rule.exponents.items()}
         return found
-
-    @property
-    def _moving(self) -> dict[str, float]:
-        """Exponents of the load in those of these arguments that change with it along the curve."""
-        if self.coordinate.contact is None or self.coordinate.over != "load":
-            return {}
-        return {name: powers["load"] for name, powers in RULES[self.table.geometry].exponents.items()}
