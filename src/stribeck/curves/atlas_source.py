@@ -11,11 +11,10 @@ import numpy as np
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.atlas.tables import TableRow, table_for
-from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.curves.coordinate import Coordinate
-from stribeck.curves.source import Coefficients, Parts, Source
+from stribeck.curves.source import Coefficients, Parts, Readings, Source
 from stribeck.numerics.dual import Dual, slope_of
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
@@ -27,49 +26,6 @@ __all__ = ["AtlasSource"]
 OBSERVABLES = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "flux_gap", "offset")
 PLACES_PER_DECADE = 20  # Places between which events are looked for
 ERROR_LENGTH = 2.0  # Change of ln(value) over which the error of a table may turn, in that of a slope
-
-
-@dataclass(frozen=True, eq=False)
-class AtlasReadings:
-    """What the atlas has at groups."""
-
-    source: AtlasSource
-    groups: Groups
-
-    solutions = ()
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names of the observables that the table holds."""
-        return tuple(each for each in OBSERVABLES if each != "flux_gap" or each in self.source.table.functions)
-
-    @cached_property
-    def values(self) -> dict[str, Array]:
-        """Observables by name."""
-        return {name: np.asarray(getattr(atlas, name)(self.groups)) for name in self.names}
-
-    @cached_property
-    def relative_errors(self) -> Array:
-        """The stated error of the table, of load shares over themselves."""
-        scales = [self.values[name] if name in ABSOLUTE else np.ones(self.groups.shape) for name in self.names]
-        return self.source.rtol * np.stack(scales, axis=-1)
-
-    @property
-    def position_error(self) -> Array:
-        """Not known."""
-        return np.full(self.groups.shape, np.nan)
-
-    @property
-    def error_estimate(self) -> float:
-        """The stated error of the table."""
-        return self.source.rtol
-
-    def friction_terms(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
-        """Return the friction of asperities and fluid, their sum and its error, shape (n, 4)."""
-        share, viscous = atlas.friction_terms(self.groups, self.source.inputs(self.groups.load, beta), definition)
-        contact = boundary_friction * self.source.sliding * share
-        total = contact + viscous
-        return np.stack([contact, viscous, total, self.source.rtol * np.abs(total)], axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,23 +64,37 @@ class AtlasSource(Source):
         """Return the groups at places, which are inside but for rounding."""
         return self.coordinate.groups_along(np.clip(np.exp(s), self.low, self.high))
 
-    def read(self, s: Array, rtol: float | None = None) -> AtlasReadings:
-        """Return what the table has at places."""
-        return AtlasReadings(self, self._groups(s))
+    def read(self, s: Array, rtol: float | None = None) -> Readings:
+        """Return what the table has at places, with its stated error, which is relative, of load shares too."""
+        groups = self._groups(s)
+        names = tuple(each for each in OBSERVABLES if each != "flux_gap" or each in self.table.functions)
+        values = {name: np.asarray(getattr(atlas, name)(groups)) for name in names}
+        scales = [values[name] if name in ABSOLUTE else np.ones(groups.shape) for name in names]
+
+        def friction_terms(*coefficients: Any) -> Array:
+            contact, viscous = self._friction(groups, coefficients)
+            total = contact + viscous
+            return np.stack([contact, viscous, total, self.rtol * np.abs(total)], axis=1)
+
+        unknown = np.full(groups.shape, np.nan)
+        return Readings(names, values, self.rtol * np.stack(scales, axis=-1), unknown, self.rtol, friction_terms)
+
+    def _friction(self, groups: Groups, coefficients: Any, slopes: int = 0) -> tuple[Any, Any]:
+        """Return both parts of the friction, with derivatives by the groups if wanted."""
+        boundary_friction, beta, definition = coefficients
+        load = Dual(groups.load, np.eye(3)[1][:, None] * groups.load) if slopes else groups.load
+        share, viscous = atlas.friction_terms(groups, self.inputs(load, beta), definition, slopes)
+        return boundary_friction * self.sliding * share, viscous
 
     def parts(self, s: Array, coefficients: Coefficients) -> Parts:
         """Return the load share of the fluid and both parts of the friction."""
-        found = self.read(s)
-        contact, viscous, _, _ = found.friction_terms(*coefficients).T
-        return np.asarray(atlas.fluid_load_share(found.groups)), contact, viscous
+        groups = self._groups(s)
+        return np.asarray(atlas.fluid_load_share(groups)), *self._friction(groups, coefficients)
 
     def slopes(self, s: Array, coefficients: Coefficients) -> Array:
         """Return the derivatives of the friction by the coordinate."""
-        boundary_friction, beta, definition = coefficients
-        groups = self._groups(s)
-        load = Dual(groups.load, np.eye(3)[1][:, None] * groups.load)
-        contact, viscous = atlas.friction_terms(groups, self.inputs(load, beta), definition, slopes=3)
-        return np.asarray(self.coordinate.direction @ slope_of(boundary_friction * self.sliding * contact + viscous))
+        contact, viscous = self._friction(self._groups(s), coefficients, slopes=3)
+        return np.asarray(self.coordinate.direction @ slope_of(contact + viscous))
 
     def length_at(self, s: float) -> float:
         """Return the length over which the error of a table may turn."""

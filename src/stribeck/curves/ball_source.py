@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -15,12 +15,10 @@ from stribeck.contacts.cut_off import log_cut_offs
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.curves.coordinate import Coordinate
-from stribeck.curves.line_source import PathSource
-from stribeck.curves.source import Coefficients, Parts, Progress
+from stribeck.curves.source import Coefficients, Parts, Progress, Readings, Source
 from stribeck.equations.point.observables import OBSERVABLES
 from stribeck.numerics.continuation import follow
 from stribeck.numerics.settings import MAX_LOG_STEP, WINDOW
-from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.path.hermite_path import HermitePath, Knot
 from stribeck.solver.point.knots import BallKnots
@@ -33,55 +31,40 @@ __all__ = ["BallSource", "ball_source"]
 SLOPE_LOG_STEP = 1e-4  # Step of ln(value) in central differences of the friction, for its minimum
 
 
-@dataclass(frozen=True, eq=False)
-class BallReadings:
-    """Solutions at places of the path of a ball."""
+def _readings(solutions: Sequence[PointSolution]) -> Readings:
+    """Return what solutions at places of the path have."""
+    states = [one.state for one in solutions]
+    stated = [each.relative_errors for each in states]
 
-    solutions: tuple[PointSolution, ...]
-
-    names = OBSERVABLES
-
-    @cached_property
-    def values(self) -> dict[str, Array]:
-        """Observables by name."""
-        return {name: np.array([one.state.values[name] for one in self.solutions]) for name in OBSERVABLES}
-
-    @cached_property
-    def relative_errors(self) -> Array:
-        """Estimated relative errors of the observables, absolute ones of load shares."""
-        stated = [one.state.relative_errors for one in self.solutions]
-        return np.array([[each[name] for name in OBSERVABLES] for each in stated]).reshape(-1, len(OBSERVABLES))
-
-    @property
-    def position_error(self) -> Array:
-        """Estimated absolute error of the radius of the minimum gap."""
-        return np.array([one.minimum_radius_error for one in self.solutions])
-
-    @property
-    def error_estimate(self) -> float:
-        """Largest error of all solutions."""
-        return max((one.error_estimate for one in self.solutions), default=math.nan)
-
-    def friction_terms(self, boundary_friction: Any, beta: float, definition: Definition) -> Array:
-        """Return the friction of asperities and fluid, their sum and its error, shape (n, 4)."""
-        found = [one.friction(boundary_friction, beta, definition) for one in self.solutions]
+    def friction_terms(boundary_friction: Any, beta: float, definition: Definition) -> Array:
+        found = [one.friction(boundary_friction, beta, definition) for one in solutions]
         return np.array([[f.asperities, f.fluid, f.total, f.error] for f in found]).reshape(-1, 4)
 
+    return Readings(
+        names=OBSERVABLES,
+        values={name: np.array([each.values[name] for each in states]) for name in OBSERVABLES},
+        relative_errors=np.array([[each[name] for name in OBSERVABLES] for each in stated]).reshape(-1, len(OBSERVABLES)),
+        position_error=np.array([one.minimum_radius_error for one in solutions]),
+        error_estimate=max((one.error_estimate for one in solutions), default=math.nan),
+        friction_terms=friction_terms,
+        made=lambda: solutions,
+    )
+
 
 @dataclass(frozen=True, eq=False)
-class BallSource(PathSource):
+class BallSource(Source):
     """Numbers of a ball along a path."""
 
     coordinate: Coordinate
     rtol: float
     path: HermitePath = field(compare=False)
 
-    def read(self, s: Array, rtol: float | None = None) -> BallReadings:
+    def read(self, s: Array, rtol: float | None = None) -> Readings:
         """Return the solutions at places."""
         problem: BallKnots = self.path.problem
         states = problem.states_at(self.path, s)
         contacts = map(self.coordinate.contact_at, s.tolist())
-        return BallReadings(tuple(solution_of(state, contact) for state, contact in zip(states, contacts, strict=True)))
+        return _readings([solution_of(state, contact) for state, contact in zip(states, contacts, strict=True)])
 
     def parts(self, s: Array, coefficients: Coefficients) -> Parts:
         """Return the load share of the fluid and both parts of the friction."""
@@ -137,7 +120,7 @@ def ball_source(
     on_point: Callable[[int, int], object] | None = None,
     ends: Array | None = None,
     has_area: bool = False,
-) -> tuple[BallSource, Array, BallReadings]:
+) -> tuple[BallSource, Array, Readings]:
     """Return the path of a ball from fast to slow, which may be continued to ``ends``, and the points that it has."""
     # The film is smooth at high speed.
     start, places, rtol_of_states = coordinate.groups_at(math.log(values[-1])), np.log(values), max(rtol, RTOL_RANGE[0])
@@ -168,5 +151,5 @@ def ball_source(
     if not found:
         raise SolveError(missing, None, f"{describe(start)}: {missing.value}")
     where = sorted(found)
-    points = BallReadings(tuple(found[value] for value in where))
+    points = _readings([found[value] for value in where])
     return source.along(replace(path, outcome=missing)), np.array(where), points

@@ -15,7 +15,6 @@ from stribeck._types import Array
 from stribeck.asperity_friction.coulomb import as_asperity_friction
 from stribeck.contacts.friction import Definition, Friction, FrictionArray, check_definition, coefficients, friction_of
 from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, friction_share
-from stribeck.curves.line_source import PathSource
 from stribeck.curves.regime import Landmark, Transition
 from stribeck.curves.source import Coefficients, CurveValues, Parts, Readings, Source
 from stribeck.numerics.dual import Dual, slope_of
@@ -194,11 +193,9 @@ class FrictionPath:
         on_interval: Callable[[float, float], object] | None = None,
     ) -> FrictionPath:
         """Return the path from its nearer end to a place, or as far as ``until`` holds of it, without a cold start."""
-        source = self.source
-        assert isinstance(source, PathSource)
 
         def on(path: Any) -> FrictionPath:
-            return replace(self, source=source.along(path))
+            return replace(self, source=self.source.along(path))
 
         is_enough = None if until is None else lambda path: until(on(path))
-        return on(source.path.continued(end, source.rtol, on_interval, is_enough))
+        return on(self.source.path.continued(end, self.source.rtol, on_interval, is_enough))

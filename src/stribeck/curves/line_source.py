@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, sliding_part
 from stribeck.contacts.groups import contact_law
 from stribeck.curves.coordinate import Coordinate
-from stribeck.curves.source import Coefficients, Parts, Source
+from stribeck.curves.source import Coefficients, Parts, Readings, Source
 from stribeck.equations.observables import ROW, Observables, drag_parts
 from stribeck.equations.sensitivity import derivatives_along
 from stribeck.numerics.dual import Dual, slope_of, value_of
@@ -22,58 +22,16 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES
 from stribeck.solver.at_rest import with_positive_gap
-from stribeck.solver.path.hermite_path import HermitePath
 from stribeck.solver.path.line_states import COLUMNS, POSITION
-from stribeck.solver.path.path import SolvedPath
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, minimum_estimate, solution_of, state_notes
 from stribeck.solver.solve_error import SolveError, describe
 
-__all__ = ["COLUMNS", "CurvePoint", "LineSource", "PathSource"]
+__all__ = ["COLUMNS", "CurvePoint", "LineSource"]
 
 MAX_STATE_RTOL = 1e-6  # Largest rtol of a landmark's state unless another is asked for: landmarks are a curve's headline
 FIELD_LOG_STEP = 1e-3  # Step of ln(value) in differences of what follows from fields between states
-INTERVAL_FRACTIONS = 0.5 - 0.5 * np.cos(np.pi * np.arange(9) / 9)  # Places of an interval between which events are looked for
-
-
-class PathSource(Source):
-    """Numbers off a path of solved states."""
-
-    path: Any  # A path of Taylor series, or of solved states with their slopes
-
-    @property
-    def outcome(self) -> Outcome:
-        """CONVERGED, or why the path ends early."""
-        found: Outcome = self.path.outcome
-        return found
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """Where the first and the last state lie."""
-        low, high = self.path.coordinates[[0, -1]].tolist()
-        return low, high
-
-    @property
-    def places(self) -> Array:
-        """Places of all intervals."""
-        found: Array = self.path.places(INTERVAL_FRACTIONS)
-        return found
-
-    @property
-    def states(self) -> int:
-        """How many states were solved."""
-        return len(self.path.expansions)
-
-    def length_at(self, s: float) -> float:
-        """Return the length of the interval of a place."""
-        places = self.path.coordinates
-        k = int(np.clip(np.searchsorted(places, s, side="right") - 1, 0, max(len(places) - 2, 0)))
-        return float(places[k + 1] - places[k]) if len(places) > 1 else 0.0
-
-    def along(self, path: SolvedPath | HermitePath) -> Self:
-        """Return the numbers off another path."""
-        return replace(self, path=path)  # type: ignore[type-var]
 
 
 class CurvePoint(Solution):
@@ -132,68 +90,7 @@ class CurvePoint(Solution):
 
 
 @dataclass(frozen=True, eq=False)
-class LineReadings:
-    """Rows of a path of cylinders, and their errors."""
-
-    source: LineSource
-    s: Array
-    found: Array  # Shape (n, columns)
-    errors: Array
-    rtol: float
-
-    names = ALL_NAMES
-
-    @cached_property
-    def values(self) -> dict[str, Array]:
-        """Columns by name."""
-        return dict(zip(COLUMNS, self.found.T, strict=True))
-
-    @cached_property
-    def _stated(self) -> Array:
-        return np.maximum(self.errors[:, :POSITION], self.source.least_error)
-
-    @cached_property
-    def relative_errors(self) -> Array:
-        """Estimated relative errors of the observables, absolute ones of load shares."""
-        return np.asarray(self._stated / drag_parts(self.found[:, :POSITION]))
-
-    @property
-    def position_error(self) -> Array:
-        """Estimated absolute error of the position of the minimum gap."""
-        return self.errors[:, POSITION]
-
-    @property
-    def error_estimate(self) -> float:
-        """Largest error of all rows."""
-        return float(np.nanmax(self._stated, initial=0.0)) if len(self.s) else np.nan
-
-    @cached_property
-    def solutions(self) -> tuple[Solution, ...]:
-        """The state of each row: its fields are solved on first use."""
-        coordinate, path = self.source.coordinate, self.source.path
-        rows = zip(self.s.tolist(), self.found, self.errors, strict=True)
-        return tuple(CurvePoint(coordinate, path, s, row, errors, self.rtol) for s, row, errors in rows)
-
-    def friction_terms(self, boundary_friction: Any, beta: float, definition: Definition) -> Array:
-        """Return the friction of asperities and fluid, their sum and its error, shape (n, 4)."""
-        friction, viscous = as_asperity_friction(boundary_friction), ROW[f"viscous_{definition}"]
-        rubbing = self.source.sliding * self.source.factors(friction, self.s)
-        amount, of_amount = self._amounts(friction)
-        contact, fluid = rubbing * amount, beta * self.found[:, viscous]
-        error = abs(rubbing) * of_amount + np.abs(fluid) * self.relative_errors[:, viscous]
-        return np.stack([contact, fluid, contact + fluid, error], axis=1)
-
-    def _amounts(self, friction: AsperityFriction) -> tuple[Array, Array]:
-        """Return what the friction of asperities is proportional to, and its error: off the path, or off solved states."""
-        column = ROW.get(friction.observable)
-        if column is not None:
-            return self.found[:, column], self.relative_errors[:, column]
-        of_states = np.array([friction.amount(each) for each in self.solutions]).reshape(-1, 2)
-        return of_states[:, 0], of_states[:, 1]
-
-
-@dataclass(frozen=True, eq=False)
-class LineSource(PathSource):
+class LineSource(Source):
     """Numbers of a cylinder along a path of Taylor series."""
 
     coordinate: Coordinate
@@ -221,7 +118,7 @@ class LineSource(PathSource):
         exists = self.path.problem.controlled & np.isfinite(found).any(axis=0)
         return np.asarray((errors[:, exists] <= rtol).all(axis=1))
 
-    def read(self, s: Array, rtol: float | None = None) -> LineReadings:
+    def read(self, s: Array, rtol: float | None = None) -> Readings:
         """Return rows at places; with a tolerance, a state is solved where no error is known within it."""
         found, errors = self.path.at(s)
         for i in [] if rtol is None else np.nonzero(~self._within(found, errors, rtol))[0].tolist():
@@ -230,7 +127,38 @@ class LineSource(PathSource):
                 found[i] = *point.values.array(), point.values.minimum_position
                 errors[i, : len(point.estimate.relative)] = point.estimate.relative
                 errors[i, POSITION] = point.estimate.minimum_position
-        return LineReadings(self, s, found, errors, self.rtol if rtol is None else rtol)
+        return self._readings(s, found, errors, self.rtol if rtol is None else rtol)
+
+    def _readings(self, s: Array, found: Array, errors: Array, rtol: float) -> Readings:
+        """Return rows of the path, shape (n, columns), and their errors, with the friction that follows from both."""
+        stated = np.maximum(errors[:, :POSITION], self.least_error)
+        relative = np.asarray(stated / drag_parts(found[:, :POSITION]))
+
+        def points() -> list[CurvePoint]:
+            rows = zip(s.tolist(), found, errors, strict=True)
+            return [CurvePoint(self.coordinate, self.path, at, row, error, rtol) for at, row, error in rows]
+
+        def friction_terms(boundary_friction: Any, beta: float, definition: Definition) -> Array:
+            friction, viscous = as_asperity_friction(boundary_friction), ROW[f"viscous_{definition}"]
+            rubbing, column = self.sliding * self.factors(friction, s), ROW.get(friction.observable)
+            if column is not None:
+                amount, of_amount = found[:, column], relative[:, column]
+            else:  # off solved states
+                amount, of_amount = np.array([friction.amount(each) for each in readings.solutions]).reshape(-1, 2).T
+            contact, fluid = rubbing * amount, beta * found[:, viscous]
+            error = abs(rubbing) * of_amount + np.abs(fluid) * relative[:, viscous]
+            return np.stack([contact, fluid, contact + fluid, error], axis=1)
+
+        readings = Readings(
+            names=ALL_NAMES,
+            values=dict(zip(COLUMNS, found.T, strict=True)),
+            relative_errors=relative,
+            position_error=errors[:, POSITION],
+            error_estimate=float(np.nanmax(stated, initial=0.0)) if len(s) else np.nan,
+            friction_terms=friction_terms,
+            made=points,
+        )
+        return readings
 
     def parts(self, s: Any, coefficients: Coefficients) -> Parts:
         """Return the load share of the fluid and both parts of the friction, at places that may bring their derivatives."""

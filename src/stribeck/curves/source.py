@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from typing import Any, Protocol, Self
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Self
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.friction import Definition, Friction, FrictionArray
 from stribeck.curves.coordinate import Coordinate
+from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown, brief_text
 
@@ -24,64 +25,68 @@ Coefficients = tuple[Any, float, Definition]
 Parts = tuple[Array, Array, Array]
 """The load share of the fluid and both parts of the friction, of asperities and of the fluid."""
 
+INTERVAL_FRACTIONS = 0.5 - 0.5 * np.cos(np.pi * np.arange(9) / 9)  # Places of an interval between which events are looked for
 
-class Readings(Protocol):
+
+@dataclass(frozen=True, eq=False)
+class Readings:
     """Observables at several places of a curve, with their errors, friction and solutions."""
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names of the observables that have errors."""
+    names: tuple[str, ...]  # Of the observables that have errors
+    values: Mapping[str, Array]
+    relative_errors: Array  # Estimated, absolute for the load shares, shape (n, names)
+    position_error: Array  # Estimated absolute error of the position of the minimum gap
+    error_estimate: float  # The largest error, as a solution states it
+    friction_terms: Callable[[Any, float, Definition], Array]
+    """Gives the friction of asperities and fluid, their sum and its error, shape (n, 4), for other coefficients."""
+    made: Callable[[], Iterable[Any]] = tuple  # Gives a solution for each place; none where no states are solved
 
-    @property
-    def values(self) -> Mapping[str, Array]:
-        """Observables by name."""
-
-    @property
-    def relative_errors(self) -> Array:
-        """Estimated errors, absolute for the load shares, shape (n, names)."""
-
-    @property
-    def position_error(self) -> Array:
-        """Estimated absolute error of the position of the minimum gap."""
-
-    @property
-    def error_estimate(self) -> float:
-        """The largest error, as a solution states it."""
-
-    @property
+    @cached_property
     def solutions(self) -> tuple[Any, ...]:
         """A solution for each place; empty where no states are solved."""
-
-    def friction_terms(self, boundary_friction: Any, beta: float, definition: Definition) -> Array:
-        """Return the friction of asperities and fluid, their sum and its error, shape (n, 4)."""
+        return tuple(self.made())
 
 
 class Source(ABC):
-    """The numbers along a coordinate; places are logarithms of what varies."""
+    """The numbers along a coordinate, off a path of solved states if nothing else; places are logarithms of what varies."""
 
     coordinate: Coordinate
     rtol: float  # Relative tolerance of the observables
+    path: Any  # A path of Taylor series, or of solved states with their slopes
     has_state_slopes = False  # Whether states that are solved tell the slope of the friction better than :meth:`slopes`
 
     @property
-    @abstractmethod
     def outcome(self) -> Outcome:
         """CONVERGED, or why the path ends early."""
+        found: Outcome = self.path.outcome
+        return found
 
     @property
-    @abstractmethod
     def ends(self) -> tuple[float, float]:
-        """Places between which it is a function."""
+        """Places between which it is a function: of a path those of the first and the last state."""
+        low, high = self.path.coordinates[[0, -1]].tolist()
+        return low, high
 
     @property
-    @abstractmethod
     def places(self) -> Array:
-        """Places between which events are looked for, ascending."""
+        """Places between which events are looked for, ascending: of a path those of all intervals."""
+        found: Array = self.path.places(INTERVAL_FRACTIONS)
+        return found
 
     @property
-    @abstractmethod
     def states(self) -> int:
         """How many states were solved."""
+        return len(self.path.expansions)
+
+    def length_at(self, s: float) -> float:
+        """Return the length over which errors change: of a path that of the interval of a place."""
+        places = self.path.coordinates
+        k = int(np.clip(np.searchsorted(places, s, side="right") - 1, 0, max(len(places) - 2, 0)))
+        return float(places[k + 1] - places[k]) if len(places) > 1 else 0.0
+
+    def along(self, path: Any) -> Self:
+        """Return the numbers off another path."""
+        return replace(self, path=path)  # type: ignore[type-var]
 
     @abstractmethod
     def read(self, s: Array, rtol: float | None = None) -> Readings:
@@ -94,10 +99,6 @@ class Source(ABC):
     @abstractmethod
     def slopes(self, s: Array, coefficients: Coefficients) -> Array:
         """Return the derivatives of the friction by the coordinate."""
-
-    @abstractmethod
-    def length_at(self, s: float) -> float:
-        """Return the length over which errors change."""
 
     def accepted(self, rtol: float | None) -> float:
         """Return the error of the observables up to which a landmark is read off."""
