@@ -52,7 +52,7 @@ class BatchSolution(Exported, Shown, ByValue):
     contacts, errors and outcomes.
     """
 
-    _picture = "stribeck.plot.batch.plot_states"
+    _picture = "stribeck.plot.curve.plot_states"
 
     groups: Annotated[Groups, "the states; where a fluid or solid varies, with that of the first"]
     contacts: Annotated[Objects | None, "the contacts they came from"]

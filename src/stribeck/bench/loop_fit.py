@@ -83,7 +83,7 @@ LEVELS = (0.682689492137086, 0.95)  # Probabilities of the two intervals
 class LoopFit(WithFittedInputs, Exported, Told, ByValue):
     """Inputs of a contact fitted to a friction loop, with their intervals."""
 
-    _picture = "stribeck.plot.strokes.plot_loop_fit"
+    _picture = "stribeck.plot.in_time.plot_loop_fit"
 
     inputs: Annotated[tuple[FittedInput, ...], "the fitted inputs; their intervals are those of the covariance"]
     outcome: Annotated[FitOutcome, "how the fit ended"]

@@ -42,7 +42,7 @@ POINTS = (
 class BenchCurve(Exported, Told, ByValue):
     """Friction over speed from raw files of a rig; its dataset has points along ``point`` and rows of files along ``row``."""
 
-    _picture = "stribeck.plot.bench.plot_bench"
+    _picture = "stribeck.plot.in_time.plot_bench"
 
     paths: Annotated[tuple[str, ...], "the files"]
     curves: Annotated[tuple[str, ...], "names of the curves"]

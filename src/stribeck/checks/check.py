@@ -60,7 +60,7 @@ class Check(Record):
 class Checks(Exported, Told):
     """The checks of one contact; its dataset has them along ``check``."""
 
-    _picture = "stribeck.plot.checks.plot_checks"
+    _picture = "stribeck.plot.rows.plot_checks"
 
     checks: Annotated[tuple[Check, ...], "those that could be made, in the order of the table"]
     unsolved: Annotated[tuple[str, ...], "what could not be checked, and why, one sentence each"] = ()

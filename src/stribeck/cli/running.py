@@ -12,7 +12,6 @@ from collections.abc import Callable, Sequence
 from cyclopts import App, CycloptsError, MissingArgumentError, Parameter, UnusedCliTokensError
 
 import stribeck as sb
-from stribeck.cli.bench import bench_command
 from stribeck.cli.exits import (
     EXIT_BAD_INPUT,
     EXIT_BROKEN_PIPE,
@@ -24,11 +23,17 @@ from stribeck.cli.exits import (
     prepare_streams,
     redirect_to_null,
 )
-from stribeck.cli.experiment import experiment_command
-from stribeck.cli.fits import compare_command, fit_command, loop_command, master_command, next_command
-from stribeck.cli.leak import leak_command
+from stribeck.cli.measured import (
+    bench_command,
+    compare_command,
+    experiment_command,
+    fit_command,
+    loop_command,
+    master_command,
+    next_command,
+)
 from stribeck.cli.solving import check_command, curve_command, figures_command, regimes_command, solve_command
-from stribeck.cli.stroke import stroke_command
+from stribeck.cli.strokes import leak_command, stroke_command
 from stribeck.cli.studies import explore_command, new_command, report_command, surface_command, sweep_command
 from stribeck.files.writing import reason_of
 from stribeck.quantities.outcome import Outcome

@@ -11,7 +11,7 @@ from cyclopts import Parameter
 import stribeck as sb
 from stribeck.cli.arguments import OUTPUTS, Number, Outputs, Whole
 from stribeck.cli.exits import EXIT_FAILED, EXIT_INTERRUPTED, answer, complain, show
-from stribeck.cli.fits import ENDING
+from stribeck.cli.measured import ENDING
 from stribeck.cli.progress import interruptible
 from stribeck.files.writing import atomic_write
 

@@ -120,7 +120,7 @@ class MasterCurve(Exported, Told):
     ``collapses`` has the abscissa first over which friction is nearest to one curve.
     """
 
-    _picture = "stribeck.plot.master_curve.plot_master_curve"
+    _picture = "stribeck.plot.experiments.plot_master_curve"
 
     data: Annotated[Measurements, "what was measured"]
     collapses: Annotated[tuple[Collapse, ...], "one for each abscissa, the best first"]

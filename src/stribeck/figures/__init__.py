@@ -3,7 +3,6 @@
 One module for each figure, ``figure_3`` to ``figure_s1``; :func:`make_figures` makes and keeps them.
 """
 
-from stribeck.figures.build import Made, make_figures
-from stribeck.figures.paper_figure import FIGURES, PaperFigure, figure_names, load_figure
+from stribeck.figures.build import FIGURES, Made, PaperFigure, figure_names, load_figure, make_figures
 
 __all__ = ["FIGURES", "Made", "PaperFigure", "figure_names", "load_figure", "make_figures"]

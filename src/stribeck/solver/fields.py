@@ -113,7 +113,7 @@ class Field(Fields):
         Which of the two units hold.
     """
 
-    _picture = "stribeck.plot.ball.plot_field"
+    _picture = "stribeck.plot.state.plot_field"
     _coordinates = "x", "y"
 
     x: Array

@@ -22,7 +22,7 @@ __all__ = ["Stroke"]
 class Stroke(Exported, Told, ByValue):
     """Friction and films of a line contact over time, in SI units."""
 
-    _picture = "stribeck.plot.strokes.plot_stroke"
+    _picture = "stribeck.plot.in_time.plot_stroke"
 
     contact: Annotated[Contact, "the contact; its speed is the largest of the motion"]
     motion: Annotated[Motion, "the motion"] = field(repr=False)

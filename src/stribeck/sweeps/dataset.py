@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 class Sweep(Exported, Told, ByValue):
     """The states of a store at the time it was read."""
 
-    _picture = "stribeck.plot.batch.plot_states"
+    _picture = "stribeck.plot.curve.plot_states"
 
     path: Annotated[Path, "the store"]
     about: Annotated[

@@ -68,7 +68,7 @@ class Uncertainty(Exported, Told):
     Its dataset has value, median, ends of the intervals and SI unit along ``quantity``.
     """
 
-    _picture = "stribeck.plot.uncertainty.plot_uncertainty"
+    _picture = "stribeck.plot.rows.plot_uncertainty"
 
     contact: Annotated[Contact, "the contact with the inputs as given"]
     errors: Annotated[dict[str, float], "standard error of the logarithm of each uncertain input of the contact"]

@@ -81,7 +81,7 @@ class PointSolution(BaseSolution):
     Observables (``contact_load_share`` ... ``offset``) are attributes too, see the table of symbols in theory.md.
     """
 
-    _picture = "stribeck.plot.ball.plot_point_solution"
+    _picture = "stribeck.plot.state.plot_point_solution"
 
     groups: Groups
     contact: Contact | None

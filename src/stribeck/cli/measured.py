@@ -1,23 +1,33 @@
-"""Commands that fit: inputs from measured friction, what to measure next, and which contact law the data prefer."""
+"""Commands on measurements: curves from raw files of a rig, fits, what to measure next, and published experiments."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
 
 import stribeck as sb
-from stribeck.cli.arguments import OUTPUTS, Names, Outputs, Quantities, Whole
-from stribeck.cli.exits import EXIT_FAILED, complain
+from stribeck.cli.arguments import OUTPUTS, Names, Outputs, Quantities, Quantity, Verbose, Whole
+from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, answer, complain
 from stribeck.cli.progress import interruptible
-from stribeck.quantities.units import InputError
+from stribeck.files.writing import check_writable
+from stribeck.quantities.formats import format_percent
+from stribeck.quantities.units import InputError, checked_word
 
 if TYPE_CHECKING:
     from stribeck.cases.case import Case
+    from stribeck.experiments.experiment import Experiment, Prediction
+
 
 STROKES = 20  # Strokes that a fit of a loop solves, about
+
+SHORT_NOTES = 8  # Notes that are printed without -v, so that the answer fits a screen
+
+ENDING = ".toml"  # Of case files
 
 
 def fit_command(
@@ -170,9 +180,6 @@ def compare_command(
     return outputs.finish(found, lines, loaded.title, others=others)
 
 
-ENDING = ".toml"  # Of case files
-
-
 def read_arguments(command: str, files: Sequence[Path]) -> tuple[list[Path], Case]:
     """Return the data files and the case that a command was given, which may stand in any order."""
     # Imported here, so that other commands need not load fits.
@@ -204,3 +211,115 @@ def read_arguments(command: str, files: Sequence[Path]) -> tuple[list[Path], Cas
         if not path.exists():
             raise InputError(missing_text(path))
     return data, load_case(cases[0])
+
+
+def bench_command(
+    runs: Annotated[list[str], Parameter(consume_multiple=True)],
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(alias="-o")] = None,
+    case: Path | None = None,
+    name: str | None = None,
+    fluid: str | None = None,
+    temperature: Quantity = None,
+    per_decade: float | None = None,
+    arm: Quantity = None,
+    track_radius: Quantity = None,
+    verbose: Verbose = False,
+    outputs: Outputs = OUTPUTS,
+) -> int:
+    """Make a Stribeck curve of raw files of a rig: what is steady, both directions averaged, the error of each point.
+
+    Example: stribeck bench run_1.csv run_2.csv -o curve.csv --plot kept.png
+
+    Example: stribeck bench "runs/*.csv" -o curve.csv --name "{fluid}_{load}N_{run}.csv" --fluid "iso-vg grade=46"
+
+    Example: stribeck bench rheometer.csv -o curve.csv --arm "15 mm" --track-radius "15 mm"
+
+    stribeck fit reads the curve as it is.  --arm makes a torque a friction force, --track-radius a rotation a speed, and
+    --fluid gives the viscosity at the temperature of the file or of --temperature.  --name is the pattern of the file names.
+
+    The table [bench] of --case has these options, columns and units.  --per-decade is the number of bins in a decade of speed
+    where the speed never rests.
+    """
+    if out is not None:
+        from stribeck.files.datasets import CSV_ENDINGS
+
+        check_writable(out, CSV_ENDINGS, force=outputs.force)
+    outputs.check()
+    with interruptible() as progress:
+        found = sb.bench.read(
+            runs,
+            case,
+            name=name,
+            fluid=fluid,
+            temperature=temperature,
+            per_decade=per_decade,
+            arm=arm,
+            track_radius=track_radius,
+            on_file=lambda n, m: progress(n, m, "files"),
+        )
+    written, problems = outputs.write(
+        found, others={} if out is None else {out: partial(found.to_csv, out, force=outputs.force)}
+    )
+
+    def lines() -> list[str]:
+        from stribeck.quantities.results import table_lines
+
+        card = found._card()
+        notes = card.notes if verbose or len(card.notes) <= SHORT_NOTES else card.notes[-SHORT_NOTES:]
+        more = [] if len(notes) == len(card.notes) else [f"-v shows {len(card.notes) - len(notes)} more notes."]
+        taken = [f"Read: {each}." for each in dict.fromkeys(found.taken)] if verbose else []
+        return [card.headline, *table_lines(card.table, card.right), *(f"Note: {note}" for note in notes), *more, *taken]
+
+    def content() -> dict[str, Any]:
+        return found.to_dict() | {"written": written}
+
+    answer(outputs.json, content, lines, written=written)
+    return complain("\n".join(problems), EXIT_BAD_INPUT if problems else 0)
+
+
+def experiment_command(
+    folder: Path,
+    /,
+    *,
+    model: str | None = None,
+    verbose: Verbose = False,
+    json: bool = False,
+) -> int:
+    """Predict a published experiment without a fit and report measured over predicted, the model's error first.
+
+    Example: stribeck experiment tests/data/experiments/oring
+
+    The folder holds experiment.toml, in which every input has a value, an error and a source, and a table of what was
+    measured.  --model predicts by one of its models instead of all.
+    """
+    from stribeck.experiments.experiment import load_experiment, predict_experiment
+
+    experiment = load_experiment(folder)
+    names = list(experiment.models) if model is None else [checked_word("model", model, experiment.models)]
+    with interruptible() as progress:
+        found = [predict_experiment(experiment, name, progress) for name in names]
+    answer(json, lambda: _experiment_content(experiment, found), lambda: _experiment_lines(experiment, found, verbose))
+    return 0
+
+
+def _experiment_content(experiment: Experiment, found: list[Prediction]) -> dict[str, Any]:
+    numbers = ("predicted", "predicted_error", "measured", "measured_error", "ratio", "ratio_error", "agrees")
+    models = {each.model: {name: getattr(each, name).tolist() for name in numbers} for each in found}
+    about = {name: getattr(experiment, name) for name in ("title", "source", "licence", "relative_to")}
+    return about | {"unknown": list(experiment.unknown), "rows": list(experiment.labels), "models": models}
+
+
+def _experiment_lines(experiment: Experiment, found: list[Prediction], verbose: bool) -> Iterator[str]:
+    """Yield each model's answer, then what is not known, and with all the inputs and their sources."""
+    for each in found:
+        yield str(each)
+    yield from (f"Not known: {sentence}" for sentence in experiment.unknown)
+    yield f"{experiment.title}. Source: {experiment.source} ({experiment.licence})."
+    if not verbose:
+        yield "-v shows every input with its error and source."
+        return
+    for stated in dict.fromkeys(stated for each in found for stated in experiment.inputs[each.model]):
+        error = "error not known" if stated.error is None else f"± {format_percent(stated.error)}"
+        yield f"{stated.name} = {stated.value} {error}: {stated.source}"
