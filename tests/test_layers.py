@@ -9,7 +9,6 @@ import stribeck as sb
 from stribeck.asymptotics import constants, edge_layer, film_layers
 
 LAYERS = {"edge": edge_layer.layer, "inlet": film_layers.inlet, "outlet": film_layers.outlet}
-EVERY_LAYER = pytest.mark.parametrize("name", LAYERS)
 
 
 def at(function, position):
@@ -60,33 +59,15 @@ def test_the_minimum_is_that_of_slow_films_of_the_solver(solved):
 # --- convergence ---
 
 
-def test_the_edge_converges_with_the_reach():
-    values = [at(edge_layer.layer(reach).gap, 0.0) for reach in (1e3, 1e4, 1e5, 1e6)]
-    errors = np.abs(np.diff(values))
-    assert errors[1] < errors[0] / 100 and errors[2] < errors[1] / 50
-    assert errors[2] < 2e-11
-
-
-def test_the_film_converges_with_the_reach():
-    values = [film_layers.inlet(reach).constant for reach in (1e3, 1e4, 1e5, 1e6)]
-    errors = np.abs(np.diff(values))
-    assert errors[1] < errors[0] / 100 and errors[2] < errors[1] / 50
-    assert errors[2] < 1e-11
-
-
-@EVERY_LAYER
-@pytest.mark.parametrize("finer", [{"order": 16}])
-def test_finer_panels_change_nothing(name, finer):
-    solve = LAYERS[name]
-    xi = np.linspace(-6, 6, 97)
-    coarse, fine = solve(1e4), solve(1e4, **finer)
-    bound = {"edge": 2e-8, "inlet": 1e-7, "outlet": 1e-7}[name]
-    assert np.abs(coarse.gap(xi) / fine.gap(xi) - 1).max() < bound
-    assert np.abs(coarse.pressure(xi) - fine.pressure(xi)).max() < bound
-    if name == "outlet":
-        assert abs(minimum_gap(coarse)[0] - minimum_gap(fine)[0]) < 1e-9
-    if name == "inlet":
-        assert abs(coarse.constant - fine.constant) < 1e-11
+def test_constants_converge_with_the_reach(subtests):
+    for name, constant, bound in (
+        ("edge", lambda reach: at(edge_layer.layer(reach).gap, 0.0), 2e-11),
+        ("film", lambda reach: film_layers.inlet(reach).constant, 1e-11),
+    ):
+        with subtests.test(name):
+            errors = np.abs(np.diff([constant(reach) for reach in (1e3, 1e4, 1e5, 1e6)]))
+            assert errors[1] < errors[0] / 100 and errors[2] < errors[1] / 50
+            assert errors[2] < bound
 
 
 # --- equations ---
@@ -109,12 +90,13 @@ def principal_value(layer, xi):
     return inner + outer + far
 
 
-@EVERY_LAYER
-@pytest.mark.parametrize("xi", [-2.3, 1.7])
-def test_the_curvature_of_the_gap_is_the_principal_value(name, xi):
-    layer = LAYERS[name]()
-    curvature = slope(lambda points: np.array([slope(layer.gap, point, 1e-2) for point in points]), xi, 1e-2)
-    assert abs(curvature + principal_value(layer, xi) / np.pi) < 1e-5 * max(1.0, abs(curvature))
+def test_the_curvature_of_the_gap_is_the_principal_value(subtests):
+    for name, solve in LAYERS.items():
+        with subtests.test(name):
+            layer = solve()
+            for xi in (-2.3, 1.7):
+                curvature = slope(lambda points, gap=layer.gap: np.array([slope(gap, at, 1e-2) for at in points]), xi, 1e-2)
+                assert abs(curvature + principal_value(layer, xi) / np.pi) < 1e-5 * max(1.0, abs(curvature))
 
 
 def test_the_edge_obeys_the_contact_law():

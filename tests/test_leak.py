@@ -72,9 +72,8 @@ def test_tables_are_read_as_programs_write_them(capsys, tmp_path, subtests):
             assert leak(capsys, path)["out"]["film"] == pytest.approx(expected, rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
+def test_a_file_that_cannot_tell_is_refused(subtests, capsys, tmp_path):
+    for text, said in [
         ("", "holds no data"),
         ("x;p\n0;1\n1;2\n", "none of which is the position"),
         ("x [mm];p [N]\n0;1\n1;2\n", "none of which is the pressure"),
@@ -82,31 +81,28 @@ def test_tables_are_read_as_programs_write_them(capsys, tmp_path, subtests):
         ("x [mm];p [MPa]\n0;0\n1;-2\n2;1\n", "negative at x = 0.001 m"),
         ("x [mm];p [MPa]\n0;0\n1;\n2;1\n", "not a number"),
         ("x [mm];p [MPa]\n0;0\n1;2\n2;0\n", "rows between the left edge"),
-    ],
-)
-def test_a_file_that_cannot_tell_is_refused(capsys, tmp_path, text, said):
-    (tmp_path / "pressure.csv").write_text(text)
-    answer = call(capsys, "leak", tmp_path / "pressure.csv", *OILED)
-    assert (answer.code, answer.out) == (2, "")
-    assert said in answer.err and answer.err.startswith("stribeck: ")
+    ]:
+        with subtests.test(text=text, said=said):
+            (tmp_path / "pressure.csv").write_text(text)
+            answer = call(capsys, "leak", tmp_path / "pressure.csv", *OILED)
+            assert (answer.code, answer.out) == (2, "")
+            assert said in answer.err and answer.err.startswith("stribeck: ")
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
+def test_impossible_options_are_refused(subtests, capsys):
+    for options, said in [
         (("--oil", "top"), "oil = 'top' must be 'left' or 'right'"),
         (("--diameter", "40 mm"), "A volume needs both --diameter and --stroke"),
         (("--diameter", "40 mm", "--stroke", "-1 mm"), "A volume needs both --diameter and --stroke, above zero"),
         (("--in-speed", "0"), "must be above zero"),
         (("--in-speed", "3 mm"), "in_speed = '3 mm' is a length"),
         (("--modulus", "70 Shore A"), "is a hardness"),
-    ],
-)
-def test_impossible_options_are_refused(capsys, options, said):
-    kept = {name: value for name, value in zip(OILED[::2], OILED[1::2], strict=True) if name not in options}
-    answer = call(capsys, "leak", SEAL, *(word for pair in kept.items() for word in pair), *options)
-    assert (answer.code, answer.out) == (2, "")
-    assert said in answer.err
+    ]:
+        with subtests.test(options=options, said=said):
+            kept = {name: value for name, value in zip(OILED[::2], OILED[1::2], strict=True) if name not in options}
+            answer = call(capsys, "leak", SEAL, *(word for pair in kept.items() for word in pair), *options)
+            assert (answer.code, answer.out) == (2, "")
+            assert said in answer.err
 
 
 def test_no_file_is_answered_in_a_sentence(capsys, tmp_path):

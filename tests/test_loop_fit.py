@@ -8,8 +8,8 @@ from command_line import call, case_text
 
 import stribeck as sb
 
-STROKE = {"motion": '"sine"', "stroke": '"20 mm"', "frequency": '"0.5 1/s"', "steps": "24"}
-MOTION = sb.motions.Sine(20e-3, 0.5)
+STROKE = {"motion": '"sine"', "stroke": '"5 mm"', "frequency": '"2 1/s"', "steps": "24"}
+MOTION = sb.motions.Sine(5e-3, 2.0)
 NOISE = 2e-3
 
 
@@ -84,21 +84,19 @@ def test_a_shear_stress_comes_out_of_a_loop_in_the_place_of_a_coefficient(tmp_pa
     assert low < 0.2e6 < high < 1.3 * low
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
+def test_what_is_no_loop_is_refused(subtests, capsys, case, tmp_path):
+    for text, said in [
         ("position [mm],friction\n0,0.1\n1,0.2\n", "friction has one sign"),
         ("speed,friction\n0,0.1\n1,-0.2\n", "a loop has a column 'friction'"),
-        ("position [cm],friction\n0,0.1\n20,-0.2\n", "positions span 0.2 m and the motion 0.02 m"),
+        ("position [cm],friction\n0,0.1\n20,-0.2\n", "positions span 0.2 m and the motion 0.005 m"),
         ("time [s],friction\n0,0.1\n1,-0.2\n", "too few"),
         ("time [mm],friction\n0,0.1\n1,-0.2\n", "time"),
-    ],
-)
-def test_what_is_no_loop_is_refused(capsys, case, tmp_path, text, said):
-    path = tmp_path / "loop.csv"
-    path.write_text(text)
-    answer = call(capsys, "loop", path, case)
-    assert answer.code == 2 and said in answer.err and answer.out == ""
+    ]:
+        with subtests.test(text=text, said=said):
+            path = tmp_path / "loop.csv"
+            path.write_text(text)
+            answer = call(capsys, "loop", path, case)
+            assert answer.code == 2 and said in answer.err and answer.out == ""
 
 
 def test_a_loop_needs_a_motion_that_repeats(tmp_path):

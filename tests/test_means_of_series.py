@@ -52,18 +52,16 @@ def test_a_series_of_steps_becomes_means_without_its_rows_of_starting(subtests):
             assert np.all((0.01 < found.error / found.friction) & (found.error / found.friction < 0.03))
 
 
-def test_errors_of_means_are_those_that_the_memory_of_samples_leaves(subtests, read):
-    for memory in [0.9]:
-        with subtests.test(memory=memory):
-            rng = np.random.default_rng(7)
-            misses = []
-            for _ in range(25):  # of 8 steps each
-                found = read(series(rng, memory))
-                assert len(found) == 8
-                misses += ((found.friction - curve(1e3 * found.values)) / found.error).tolist()
-            # The rms of 200 normal numbers is within 0.85 and 1.15 by three of its standard deviations; errors that are
-            # estimated from 38 samples of memory 0.9 widen that by a third.
-            assert 0.7 < np.sqrt(np.mean(np.square(misses))) < 1.25
+def test_errors_of_means_are_those_that_the_memory_of_samples_leaves(read):
+    rng = np.random.default_rng(7)
+    misses = []
+    for _ in range(25):  # of 8 steps each
+        found = read(series(rng, 0.9))
+        assert len(found) == 8
+        misses += ((found.friction - curve(1e3 * found.values)) / found.error).tolist()
+    # The rms of 200 normal numbers is within 0.85 and 1.15 by three of its standard deviations; errors that are
+    # estimated from 38 samples of memory 0.9 widen that by a third.
+    assert 0.7 < np.sqrt(np.mean(np.square(misses))) < 1.25
 
 
 def test_steps_shorter_than_the_memory_of_their_noise_share_what_they_show_of_it(read):

@@ -7,28 +7,24 @@ import pytest
 
 FOLDER = Path(__file__).parents[1] / "docs" / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.py"))
-EACH = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 
 CELL = re.compile(r"^# %%(?: \[(\w+)\])?\n", re.MULTILINE)
 
 
-def test_there_are_the_three_notebooks():
+def test_each_notebook_begins_with_its_title_and_explains_its_code(subtests):
     assert {path.stem for path in NOTEBOOKS} == {"fitting", "paper_in_one_hour", "topography_to_stribeck_curve"}
-
-
-@EACH
-def test_a_notebook_begins_with_its_title_and_explains_its_code(path):
-    _, *parts = CELL.split(path.read_text())
-    kinds, texts = parts[::2], parts[1::2]
-    assert kinds[0] == "markdown" and texts[0].startswith("# # ")
-    assert all(
-        line.startswith("#") for kind, text in zip(kinds, texts, strict=True) if kind for line in text.split("\n") if line
-    )
-    assert kinds.count("markdown") >= kinds.count(None) - 1
+    for path in NOTEBOOKS:
+        with subtests.test(path.stem):
+            _, *parts = CELL.split(path.read_text())
+            kinds, texts = parts[::2], parts[1::2]
+            assert kinds[0] == "markdown" and texts[0].startswith("# # ")
+            words = [line for kind, text in zip(kinds, texts, strict=True) if kind for line in text.split("\n") if line]
+            assert all(line.startswith("#") for line in words)
+            assert kinds.count("markdown") >= kinds.count(None) - 1
 
 
 @pytest.mark.slow  # each build of the site runs them cell by cell
-@EACH
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_runs_and_its_claims_hold(path, monkeypatch):
     pyplot = pytest.importorskip("matplotlib.pyplot")
     pyplot.switch_backend("agg")

@@ -234,12 +234,3 @@ def test_a_curve_tells_once_from_where_on_the_suction_is_too_much():
     [note] = [note for note in curve.notes if "cavitate" in note]
     count = sum(suction(solution) > ATMOSPHERE for solution in curve.solutions)
     assert 0 < count < 9 and f"({count} of 9 points, speed" in note
-
-
-@pytest.mark.quick
-def test_the_command_prints_the_suction(capsys, tmp_path):
-    full, seal = tmp_path / "full.toml", EXAMPLES / "rod_seal.toml"
-    full.write_text(seal.read_text().replace('model = "exit"', 'model = "none"'))
-    assert "Note: Behind the contact the fluid pressure falls 0.14" in call(capsys, "solve", full, "-v").out
-    assert "cavitate" not in call(capsys, "solve", seal).out
-    assert "cavitate" not in call(capsys, "solve", PDMS).out

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 from fit_data import TRUE
+from yasuda import Yasuda
 
 import stribeck as sb
 from stribeck.fluids.laws import FlowFactors, ViscosityLaw
@@ -12,34 +13,6 @@ from stribeck.fluids.rheology.tabulated import TabulatedLaw
 from stribeck.solids.solid import Lengths
 
 CONTACT = TRUE.replace(speed="100 mm/s", roughness="0.1 um")
-
-
-@dataclass(frozen=True)
-class Yasuda(TabulatedLaw):
-    relaxation_time: float
-    exponent: float
-    name = "yasuda"
-
-    @property
-    def parameters(self):
-        return {"relaxation_time": self.relaxation_time, "exponent": self.exponent}
-
-    @property
-    def time(self):
-        return self.relaxation_time
-
-    @property
-    def shape(self):
-        return (self.exponent,)
-
-    def smallest(self):
-        return np.log(1e-9)
-
-    def scaled(self, units):
-        return replace(self, relaxation_time=self.relaxation_time / units.time)
-
-    def stress(self, rate):
-        return rate * (1 + rate**2) ** ((self.exponent - 1) / 2)
 
 
 @dataclass(frozen=True)

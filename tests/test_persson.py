@@ -86,21 +86,6 @@ def test_full_contact_is_reached_as_the_integral_says(law):
     assert miss[-1] < 0.02
 
 
-def test_the_pressure_falls_from_full_contact_to_nothing(subtests):
-    for gamma in [0.1, 0.45, 1.0]:
-        with subtests.test(gamma=gamma):
-            law = persson_law(ROLLED, gamma)
-            assert np.all(np.diff(law.log_pressure(EVERYWHERE)) < 0)
-            assert np.all(with_slope(law.log_pressure, EVERYWHERE)[1] < 0)
-
-
-def test_the_slope_is_the_derivative(law):
-    s = np.concatenate((np.geomspace(1e-200, 1e-2, 60), np.linspace(0.01, 45, 400)))
-    d = 1e-5 * s
-    difference = (law.log_pressure(s + d) - law.log_pressure(s - d)) / (2 * d)
-    assert np.abs(with_slope(law.log_pressure, s)[1] / difference - 1).max() < 1e-7
-
-
 def test_shape_does_not_depend_on_height_or_unit_of_length():
     small = persson_law(SelfAffine(h_rms=3e-7, q0=1e4, q1=1e7, hurst=0.8, roll_off=5e4))
     unit = persson_law(ROLLED)
@@ -141,6 +126,5 @@ def test_rugged_measured_spectra_give_a_monotone_law(noise, gamma, seed):
 
 def test_an_impossible_gamma_is_refused(subtests):
     for gamma in [0, -1, 1.5, float("nan"), True, "0.45"]:
-        with subtests.test(gamma=gamma):
-            with pytest.raises(sb.InputError, match="gamma = "):
-                persson_law(ROLLED, gamma)
+        with subtests.test(gamma=gamma), pytest.raises(sb.InputError, match="gamma = "):
+            persson_law(ROLLED, gamma)

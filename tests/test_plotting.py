@@ -1,6 +1,5 @@
 """Pictures: they show the solved numbers, say where they are not to be trusted, and can be read."""
 
-import itertools
 import sys
 import textwrap
 from functools import cache
@@ -8,7 +7,6 @@ from functools import cache
 import matplotlib
 import numpy as np
 import pytest
-from ball_data import BALL
 from command_line import HEAVY, PDMS, run_python
 
 import stribeck as sb
@@ -136,13 +134,6 @@ def test_the_axis_that_is_wanted_is_below_and_the_other_one_above(curve, subtest
         picture(curve, abscissa="sped")
 
 
-def test_the_hersey_number_of_a_ball_has_its_radius():
-    ball = sb.stribeck_curve(BALL, speed=(0.7 * BALL.speed, 1.4 * BALL.speed), points=2, rtol=1e-2)
-    axes = ball.plot(abscissa="hersey").axes[0]
-    assert axes.get_xlabel() == "Hersey number $ηUR/F_N$"
-    np.testing.assert_array_equal(line(axes, "from the fluid").get_xdata(), ball.hersey_number)
-
-
 def test_minimum_and_equal_shares_are_marked_where_they_were_located(curve):
     axes = picture(curve, abscissa="hersey").axes[0]
     mark = line(axes, "minimum")
@@ -193,14 +184,6 @@ def test_a_profile_shows_the_fields_in_si_units(solution):
     np.testing.assert_allclose(line(below, "total").get_ydata(), fields.pressure / 1e3, atol=1e-6)
 
 
-def test_a_profile_reaches_as_far_as_the_pressure(solved):
-    for groups in ((1e4, 0.1, 1e-3), (1e-6, 0.1, 1e-4)):
-        found = solved(*groups)
-        axes = picture(found).axes[1]
-        share = np.abs(found.pressure) / np.abs(found.pressure).max()
-        assert np.abs(found.x[share > 0.03]).max() < axes.get_xlim()[1]
-
-
 # --- what a reader must know ---
 
 
@@ -244,13 +227,6 @@ def test_notes_stand_in_a_caption_of_the_colour_of_the_text_and_stay_away_if_not
         assert "outside its range," not in without and "stribeck 0." in without
 
 
-def test_the_marks_lie_on_the_line_that_is_drawn(heavy):
-    axes = picture(heavy).axes[0]
-    drawn = set(zip(*line(axes, "friction").get_data(), strict=True))
-    for label in ("minimum", "fluid carries half the load"):
-        assert set(zip(*line(axes, label).get_data(), strict=True)) <= drawn
-
-
 def test_the_contact_itself_is_marked_where_it_lies(subtests):
     for kind in ["over speed", "over load", "over roughness"]:
         with subtests.test(kind=kind):
@@ -266,30 +242,6 @@ def test_the_contact_itself_is_marked_where_it_lies(subtests):
 # --- legibility ---
 
 
-def boxes_of(figure):
-    """Return what is written on a figure, with its box: texts, and the labels of ticks that are shown."""
-    figure.canvas.draw()
-    shown = texts(figure)
-    for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)):
-        low, high = sorted(axis.get_view_interval())
-        places = [*axis.get_majorticklocs(), *axis.get_minorticklocs()]
-        labels = zip(axis.get_ticklabels(which="both"), places, strict=True)
-        shown += [label for label, at in labels if low * (1 - 1e-9) <= at <= high * (1 + 1e-9) and label.get_text()]
-    return [(each.get_text(), each.get_window_extent(figure.canvas.get_renderer())) for each in shown]
-
-
-def test_texts_lie_inside_the_picture_and_apart_from_one_another(subtests, heavy):
-    for kind in ("over speed", "of groups", "without any friction", "beyond the law"):
-        with subtests.test(kind=kind):
-            figure = picture(heavy if kind == "beyond the law" else curve_of_kind(kind), title="A title")
-            whole, boxes = figure.bbox, boxes_of(figure)
-            for text, box in boxes:
-                assert whole.x0 <= box.x0 and box.x1 <= whole.x1 and whole.y0 <= box.y0 and box.y1 <= whole.y1, text
-            for (text, box), (other, beside) in itertools.combinations(boxes, 2):
-                overlap = min(box.x1, beside.x1) - max(box.x0, beside.x0), min(box.y1, beside.y1) - max(box.y0, beside.y0)
-                assert min(overlap) < 1.0, (text, other)
-
-
 # --- files ---
 
 
@@ -300,16 +252,6 @@ def test_the_ending_chooses_the_format(subtests, solution, tmp_path):
             assert (tmp_path / f"profile{ending}").read_bytes().startswith(begins)
     with pytest.raises(sb.InputError, match=r"must end in \.png, \.svg or \.pdf\.$"):
         solution.plot(tmp_path / "profile.bmp")
-
-
-def test_an_existing_picture_is_kept_unless_forced(solution, tmp_path):
-    path = tmp_path / "picture.png"
-    path.write_text("precious")
-    with pytest.raises(sb.InputError, match="exists already and is kept"):
-        solution.plot(path)
-    assert path.read_text() == "precious"
-    solution.plot(path, force=True)
-    assert path.read_bytes().startswith(b"\x89PNG")
 
 
 def test_a_missing_matplotlib_is_one_sentence_with_the_remedy(curve, monkeypatch):

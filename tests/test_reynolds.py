@@ -6,7 +6,6 @@ import pytest
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import Mesh, base_edges
 from stribeck.numerics.running_integral import RunningIntegral
-from stribeck.numerics.trace import Trace
 
 pytestmark = pytest.mark.quick
 
@@ -22,32 +21,6 @@ def gradient(gap, flux_gap):
 def film():
     """Gaps of all sizes, and a flux gap."""
     return 10.0 ** np.random.default_rng(SEED).uniform(-8, 6, 60), 3e-3
-
-
-def test_the_gradient_vanishes_where_the_gap_is_the_flux_gap():
-    gap = np.array([0.1, 0.2, 0.4])
-    values = gradient(gap, 0.2)
-    assert values[1] == 0
-    assert values[0] == pytest.approx(-100.0, rel=1e-14)
-    assert values[2] == pytest.approx(3.125, rel=1e-14)
-
-
-def test_the_gap_derivative_is_that_of_the_gradient(film):
-    gap, flux_gap = film
-    step = 1e-4 * gap
-    up, down = (gradient(gap + d, flux_gap) for d in (step, -step))
-    difference = (up - down) / (2 * step)
-    scale = (gap + flux_gap) / gap**4
-    traced = gradient(Trace.number("gap", gap), flux_gap).columns["gap"]
-    assert (np.abs(traced - difference) / scale).max() < 1e-6
-
-
-def test_the_flux_derivative_is_that_of_the_gradient(film):
-    gap, flux_gap = film
-    difference = (gradient(gap, flux_gap + 1) - gradient(gap, flux_gap - 1)) / 2
-    scale = (1 + gap) / gap**3
-    traced = gradient(gap, Trace.number("flux_gap", np.array(flux_gap))).columns["flux_gap"]
-    assert (np.abs(traced - difference) / scale).max() < 1e-14
 
 
 def test_the_flux_gap_of_a_parabola_is_four_thirds_of_its_height(subtests):

@@ -88,8 +88,9 @@ def test_samples_that_cannot_be_solved_are_counted_and_end_nothing():
     assert 0 < low < high < 1
 
 
-@pytest.mark.parametrize("free", [True, "roughness"], ids=str)
-def test_what_is_free_is_a_list_of_inputs(free):
-    data, case = EXAMPLES / "pdms_measured.csv", EXAMPLES / "pdms_fit.toml"
-    with pytest.raises(sb.InputError, match="free = .* must be a list of inputs"):
-        sb.fit(data, case, free=free, intervals=False)
+def test_what_is_free_is_a_list_of_inputs(subtests):
+    for free in [True, "roughness"]:
+        with subtests.test(free=free):
+            data, case = EXAMPLES / "pdms_measured.csv", EXAMPLES / "pdms_fit.toml"
+            with pytest.raises(sb.InputError, match="free = .* must be a list of inputs"):
+                sb.fit(data, case, free=free, intervals=False)

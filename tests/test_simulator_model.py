@@ -4,18 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from fit_data import TRUE
 
 import stribeck as sb
-
-CONTACT = sb.LineContact(
-    radius="10 mm", modulus="2 MPa", load="100 N/m", viscosity="50 mPa*s", speed="1 mm/s", roughness="1 um", alpha=2.0,
-    beta=0.06, boundary_friction=0.7,
-)  # fmt: skip
 
 
 @pytest.mark.quick
 def test_the_formula_is_as_near_to_the_curve_as_it_says():
-    curve = sb.stribeck_curve(CONTACT, speed=("1 um/s", "1 m/s"), points=31, rtol=1e-4)
+    curve = sb.stribeck_curve(TRUE, speed=("1 um/s", "1 m/s"), points=31, rtol=1e-4)
     model = curve.to_stribeck_model()
     off = np.abs(model.at(curve.speed) / curve.friction.total - 1)
     assert off.max() <= 1.001 * model.relative_error and 0.3 * model.relative_error < off.max() < 0.5
@@ -26,7 +22,7 @@ def test_the_formula_is_as_near_to_the_curve_as_it_says():
 
 
 def test_no_parameter_can_be_bettered():
-    curve = sb.stribeck_curve(CONTACT, speed=("1 um/s", "1 m/s"), points=121, rtol=1e-4)
+    curve = sb.stribeck_curve(TRUE, speed=("1 um/s", "1 m/s"), points=121, rtol=1e-4)
     model = curve.to_stribeck_model()
 
     def distance(model):
@@ -39,9 +35,9 @@ def test_no_parameter_can_be_bettered():
 
 @pytest.mark.quick
 def test_a_curve_without_sliding_speeds_is_refused():
-    over_load = sb.stribeck_curve(CONTACT, load=("10 N/m", "100 N/m"), points=3, rtol=1e-3)
+    over_load = sb.stribeck_curve(TRUE, load=("10 N/m", "100 N/m"), points=3, rtol=1e-3)
     groups = sb.stribeck_curve(load=0.1, roughness=1e-4, speed=(1e-5, 1e-3), points=3, rtol=1e-3)
-    rolling = sb.stribeck_curve(CONTACT.replace(slide_to_roll=0.0), speed=("1 mm/s", "10 mm/s"), points=3, rtol=1e-3)
+    rolling = sb.stribeck_curve(TRUE.replace(slide_to_roll=0.0), speed=("1 mm/s", "10 mm/s"), points=3, rtol=1e-3)
     for curve, words in ((over_load, "runs over the load"), (groups, "speed group"), (rolling, "do not slide")):
         with pytest.raises(sb.InputError, match=words):
             curve.to_stribeck_model()

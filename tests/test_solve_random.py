@@ -100,26 +100,27 @@ def test_errors_of_load_shares_are_absolute_and_others_relative(solved):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("name", ["mixed", "hydrodynamic", "boundary"])
-def test_what_a_small_change_of_a_state_does_to_its_observables_is_their_difference(solved, name):
+def test_what_a_small_change_of_a_state_does_to_its_observables_is_their_difference(subtests, solved):
     """Errors at the nodes become those of the observables in this way."""
-    speed, load, roughness = TYPICAL[name]
-    s = solved(speed, load, roughness)
-    equations = Equations(Operators(s.mesh), speed, contact_law(sb.Groups(speed, load, roughness)), s.flux_gap**2)
-    y = np.concatenate([s.nodal_gap, [s.offset, s.flux_gap]])
-    size, x, rng = min(s.nodal_gap.min(), roughness / load), s.mesh.nodes, np.random.default_rng(45_389)
-    for _ in range(4):
-        centre, width = rng.uniform(-1, 1), rng.uniform(0.5, 1.5)
-        gap = size * rng.normal() / (1 + ((x - centre) / width) ** 2)
-        change = np.concatenate([gap, [rng.normal(), s.flux_gap * rng.normal()]])
-        up, down = (observables(equations, y + step * change, load) for step in (1e-5, -1e-5))
-        found = changes(equations, y, load, s.minimum_position, change)
-        for each in s.errors:
-            difference = (getattr(up, each) - getattr(down, each)) / 2e-5
-            scale = np.abs(changes(equations, y, load, s.minimum_position, np.diag(change))[:, ROW[each]]).sum()
-            # The minimum gap answers at the node next to it.
-            allowed = 2e-2 if each == "minimum_gap" else 1e-5
-            assert abs(found[ROW[each]] - difference) <= allowed * scale + 1e-13, each
+    for name in ["mixed", "hydrodynamic", "boundary"]:
+        with subtests.test(name=name):
+            speed, load, roughness = TYPICAL[name]
+            s = solved(speed, load, roughness)
+            equations = Equations(Operators(s.mesh), speed, contact_law(sb.Groups(speed, load, roughness)), s.flux_gap**2)
+            y = np.concatenate([s.nodal_gap, [s.offset, s.flux_gap]])
+            size, x, rng = min(s.nodal_gap.min(), roughness / load), s.mesh.nodes, np.random.default_rng(45_389)
+            for _ in range(4):
+                centre, width = rng.uniform(-1, 1), rng.uniform(0.5, 1.5)
+                gap = size * rng.normal() / (1 + ((x - centre) / width) ** 2)
+                change = np.concatenate([gap, [rng.normal(), s.flux_gap * rng.normal()]])
+                up, down = (observables(equations, y + step * change, load) for step in (1e-5, -1e-5))
+                found = changes(equations, y, load, s.minimum_position, change)
+                for each in s.errors:
+                    difference = (getattr(up, each) - getattr(down, each)) / 2e-5
+                    scale = np.abs(changes(equations, y, load, s.minimum_position, np.diag(change))[:, ROW[each]]).sum()
+                    # The minimum gap answers at the node next to it.
+                    allowed = 2e-2 if each == "minimum_gap" else 1e-5
+                    assert abs(found[ROW[each]] - difference) <= allowed * scale + 1e-13, each
 
 
 def dipped(x, lowest):
@@ -173,9 +174,9 @@ def test_the_stated_errors_of_typical_states_cover_the_true_ones(solved, true_er
     assert max(singles.values()) < 30, singles
 
 
-def test_twenty_random_states_are_solved_and_their_errors_covered(true_errors):
-    ratios, singles, _ = check(box(20, SEED), true_errors)
-    assert len(ratios) == 20
+def test_a_dozen_random_states_are_solved_and_their_errors_covered(true_errors):
+    ratios, singles, _ = check(box(12, SEED), true_errors)
+    assert len(ratios) == 12
     assert (ratios <= 1).mean() >= 0.95
     assert (singles <= 1).mean() >= 0.85
     assert singles.max() < 10

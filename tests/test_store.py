@@ -68,14 +68,6 @@ def test_a_dataset_holds_every_observable_of_every_point(curve, dataset):
         np.testing.assert_array_equal(dataset[f"{name}_group"], getattr(curve.groups, name))
 
 
-def test_films_in_metres_are_gaps_times_the_hertz_indentation(dataset):
-    u, a = dataset.hertz_indentation, dataset.hertz_half_width
-    np.testing.assert_allclose(dataset.central_film_thickness, dataset.central_gap * u, rtol=1e-15)
-    np.testing.assert_allclose(dataset.minimum_film_thickness, dataset.minimum_gap * u, rtol=1e-15)
-    np.testing.assert_allclose(dataset.minimum_film_position, dataset.minimum_position * a, rtol=1e-15)
-    np.testing.assert_allclose(u, CONTACT.hertz.indentation, rtol=1e-15)
-
-
 def test_the_attributes_of_a_file_suffice_to_solve_its_points_again(dataset):
     inputs = {name: dataset.attrs[f"input_{name}"] for name in INPUTS}
     point = dataset.isel(speed=2)
@@ -264,34 +256,6 @@ def test_a_file_that_appears_meanwhile_is_kept(tmp_path):
         temporary.write_text("ours")
         path.write_text("theirs")
     assert path.read_text() == "theirs"
-
-
-FULL = """
-import resource, sys
-sys.dont_write_bytecode = True  # a module cut off by the limit would break every later process
-import numpy as np, xarray as xr
-import stribeck as sb
-from stribeck.files.datasets import write_data
-resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, resource.RLIM_INFINITY))
-x = np.linspace(0, 1, 50_000)
-dataset = xr.Dataset({"y": ("x", np.sin(x), {"units": "1"})}, coords={"x": ("x", x, {"units": "1"})})
-for path in sys.argv[1:]:
-    try:
-        write_data(dataset, path, force=True)
-    except sb.InputError as problem:
-        print(problem)
-"""
-
-
-def test_a_full_disk_leaves_the_old_file_and_a_sentence(tmp_path):
-    paths = [tmp_path / f"curve{ending}" for ending in WRITERS]
-    for path in paths:
-        path.write_text("precious")
-    answer = run_python(FULL, *paths)
-    assert answer.code == 0, answer.err
-    assert re.fullmatch(r"(.*could not be written \(File too large\); it is unchanged\.\n){2}", answer.out)
-    assert [path.read_text() for path in paths] == 2 * ["precious"]
-    assert sorted(os.listdir(tmp_path)) == sorted(path.name for path in paths)
 
 
 def test_a_full_disk_is_not_called_a_lack_of_permission(dataset, tmp_path, monkeypatch):

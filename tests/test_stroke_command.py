@@ -45,9 +45,8 @@ def test_the_answer_is_friction_beside_steady_sliding_and_files_hold_the_rest(ca
     assert files[1].stat().st_size > 10_000
 
 
-@pytest.mark.parametrize(
-    ("table", "motion"),
-    [
+def test_every_motion_is_read_from_its_table(subtests, write):
+    for table, motion in [
         (RAMP, sb.motions.Ramp(1e-3, 3e-3, 0.5)),
         ({"motion": '"sine"', "stroke": '"5 cm"', "frequency": "2.0"}, sb.motions.Sine(0.05, 2.0)),
         ({"motion": '"stop"', "start": "0.1", "braking_time": '"10 ms"', "rest": "1.0"}, sb.motions.Stop(0.1, 0.01, 1.0)),
@@ -56,18 +55,16 @@ def test_the_answer_is_friction_beside_steady_sliding_and_files_hold_the_rest(ca
             | {"inlet": '"own-wake"'},
             sb.motions.Table([0, 0.5, 1], [0.1, 0.2, 0.1], repeats=True),
         ),
-    ],
-)
-def test_every_motion_is_read_from_its_table(write, table, motion):
-    found = sb.load_case(write(table)).stroke
-    assert found.motion == motion
-    given = {key: json.loads(table[key]) for key in ("cycles", "steps", "inlet") if key in table}
-    assert found.arguments == {"motion": motion} | given
+    ]:
+        with subtests.test(table=table, motion=motion):
+            found = sb.load_case(write(table)).stroke
+            assert found.motion == motion
+            given = {key: json.loads(table[key]) for key in ("cycles", "steps", "inlet") if key in table}
+            assert found.arguments == {"motion": motion} | given
 
 
-@pytest.mark.parametrize(
-    ("table", "said"),
-    [
+def test_a_table_that_is_wrong_is_refused_in_a_sentence(subtests, capsys, write):
+    for table, said in [
         ({"stroke": '"5 cm"'}, '[stroke] motion is missing; add motion = "ramp" or "sine" or "stop" or "table".'),
         (RAMP | {"motion": '"saw"'}, "[stroke] motion = 'saw' must be one of 'ramp', 'sine', 'stop', 'table'."),
         (RAMP | {"end": None}, "[stroke] end is missing, which motion = 'ramp' needs"),
@@ -83,11 +80,10 @@ def test_every_motion_is_read_from_its_table(write, table, motion):
             "[stroke] repeats = 'yes' must be",
         ),
         (None, "the table [stroke] is missing; add"),
-    ],
-)
-def test_a_table_that_is_wrong_is_refused_in_a_sentence(capsys, write, table, said):
-    answer = call(capsys, "stroke", write(table))
-    assert answer.code == 2 and said in answer.err and answer.out == ""
+    ]:
+        with subtests.test(table=table, said=said):
+            answer = call(capsys, "stroke", write(table))
+            assert answer.code == 2 and said in answer.err and answer.out == ""
 
 
 def test_a_table_of_shear_stresses_goes_on_below_its_first_speed_and_not_above_its_last(capsys, write):

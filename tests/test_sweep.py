@@ -38,19 +38,6 @@ def groups_at(table, i):
     return sb.Groups(*(float(table[f"{name}_group"][i]) for name in ("speed", "load", "roughness")))
 
 
-def test_scattered_states_are_those_that_solve_gives_from_cold(tmp_path):
-    file = write(tmp_path, RANDOM.format(kind="latin-hypercube", points=12))
-    found = sb.sweep(file, tmp_path / "store").to_dataset()
-    assert found.attrs["finished"] == 12
-    for i in range(0, 12, 3):
-        state = sb.solve(groups_at(found, i))
-        values = {name: getattr(state, name) for name in ("contact_load_share", "central_gap", "minimum_gap", "flux_gap")}
-        values |= {f"friction_{each}": state.friction(definition=each).total for each in ("published", "balanced")}
-        for name, value in values.items():
-            error = float(found[f"{name}_error"][i]) + state.to_dict()[f"{name}_error"]
-            assert float(found[name][i]) == pytest.approx(value, abs=error), name
-
-
 def test_zero_speed_and_zero_roughness_are_ordinary_states(tmp_path):
     text = "[groups]\n[vary]\nload = [0.1, 0.2]\nroughness = [0, 1e-3]\nspeed = [0, 1e-4, 1e-3]\n"
     found = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset(grid=False)
@@ -71,16 +58,6 @@ def test_a_contact_has_its_films_in_si_units_and_its_notes(tmp_path):
         assert float(found.central_film_thickness[i]) == pytest.approx(state.central_gap * contact.hertz.indentation, rel=2e-6)
         assert float(found.friction_balanced[i]) == pytest.approx(state.friction().total, rel=2e-6)
         assert found.message[i].item() == "\n".join(state.notes)
-
-
-def test_the_coefficients_scale_friction_on_the_same_states(tmp_path):
-    axes = "boundary_friction = [0.5, 1]\nbeta = [1, 0.1]\nspeed = [1e-3, 1e-4]\n"
-    file = write(tmp_path, f"[groups]\nload = 0.1\nroughness = 1e-3\n[vary]\n{axes}")
-    found = sb.sweep(file, tmp_path / "store").to_dataset(grid=False)
-    names = "central_gap", "friction_published_fluid", "friction_asperities"
-    gap, fluid, asperities = (found[name].values.reshape(2, 2, 2) for name in names)
-    assert np.ptp(gap, axis=(0, 1)).tolist() == [0, 0]
-    assert fluid[:, 1] == pytest.approx(0.1 * fluid[:, 0]) and asperities[1] == pytest.approx(2 * asperities[0])
 
 
 def test_the_numbers_do_not_depend_on_the_workers(tmp_path):

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from command_line import EXAMPLES
 from sweep_files import CONTACT, GRID, RANDOM, write
 
 import stribeck as sb
@@ -168,9 +167,3 @@ def test_all_problems_are_told_in_one_go(tmp_path):
     with pytest.raises(sb.InputError) as caught:
         load(tmp_path, '[groups]\nload = "x"\n[vary]\nspede = [1]\n[solver]\nrtol = 2\n[design]\nkind = "grid"\n')
     assert len(str(caught.value).splitlines()) == 5  # roughness and speed are missing too
-
-
-def test_a_design_shows_itself_in_a_screen():
-    text = repr(sb.load_sweep(EXAMPLES / "sweep.toml"))
-    assert text.startswith("SweepDesign: PDMS cylinder over speed, roughness and load: grid, ")
-    assert len(text.splitlines()) < 15 and "load: 2 values, 15 N/m to 30 N/m" in text

@@ -124,25 +124,26 @@ def read(path):
     return (xr.open_zarr if path.suffix == ".zarr" else xr.open_dataset)(path).load()
 
 
-@pytest.mark.parametrize("ending", [".nc", ".zarr", ".csv", ".parquet"])
 @pytest.mark.filterwarnings("error")
-def test_the_command_exports_every_number_text_and_unit(copy, filled, tmp_path, capsys, ending):
-    store, file = copy
-    path = tmp_path / f"sweep{ending}"
-    answer = call(capsys, "sweep", file, "--out", store, "--export", path)
-    assert (answer.code, answer.err) == (0, "") and f"Written: {path}" in answer.out
-    found, made = read(path), filled.to_dataset()
-    if ending in (".nc", ".zarr"):
-        assert dict(found.sizes) == DIMS
-        assert all(value.attrs["units"] and value.attrs["long_name"] for value in found.variables.values())
-        assert (found.attrs["complete"], found.attrs["rtol"], found.attrs["design"]) == (1, 1e-6, SMALL)
-    for name, value in made.variables.items():
-        is_table = ending in (".csv", ".parquet")
-        expected = made[name].broadcast_like(made.central_gap).transpose(*DIMS) if is_table else value
-        assert np.asarray(found[name]).ravel().tolist() == expected.values.ravel().tolist(), name
-    kept_as_it_is = call(capsys, "sweep", file, "--out", store, "--export", path)
-    assert kept_as_it_is.code == 2 and "exists already and is kept" in kept_as_it_is.err
-    assert call(capsys, "sweep", file, "--out", store, "--export", path, "--force").code == 0
+def test_the_command_exports_every_number_text_and_unit(subtests, copy, filled, tmp_path, capsys):
+    for ending in [".nc", ".zarr", ".csv", ".parquet"]:
+        with subtests.test(ending=ending):
+            store, file = copy
+            path = tmp_path / f"sweep{ending}"
+            answer = call(capsys, "sweep", file, "--out", store, "--export", path)
+            assert (answer.code, answer.err) == (0, "") and f"Written: {path}" in answer.out
+            found, made = read(path), filled.to_dataset()
+            if ending in (".nc", ".zarr"):
+                assert dict(found.sizes) == DIMS
+                assert all(value.attrs["units"] and value.attrs["long_name"] for value in found.variables.values())
+                assert (found.attrs["complete"], found.attrs["rtol"], found.attrs["design"]) == (1, 1e-6, SMALL)
+            for name, value in made.variables.items():
+                is_table = ending in (".csv", ".parquet")
+                expected = made[name].broadcast_like(made.central_gap).transpose(*DIMS) if is_table else value
+                assert np.asarray(found[name]).ravel().tolist() == expected.values.ravel().tolist(), name
+            kept_as_it_is = call(capsys, "sweep", file, "--out", store, "--export", path)
+            assert kept_as_it_is.code == 2 and "exists already and is kept" in kept_as_it_is.err
+            assert call(capsys, "sweep", file, "--out", store, "--export", path, "--force").code == 0
 
 
 def test_a_table_has_a_row_for_each_state_of_a_grid(filled, tmp_path):

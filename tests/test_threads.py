@@ -41,29 +41,26 @@ def fit_solved():
     return sb.fit(data, TRUE.replace(law=sb.contact_laws.GreenwoodTripp(), alpha=1.0), intervals=False)
 
 
-@pytest.mark.parametrize(
-    "call",
-    [
+def test_matrices_are_factorised_with_one_blas_thread(subtests, two_threads, monkeypatch):
+    for call in [
         lambda: sb.solve(GROUPS),
         lambda: sb.stribeck_curve(GROUPS, speed=(1e-4, 1e-3)),
         lambda: sb.solve_batch(sb.Groups([1e-4, 1e-3], 0.1, 1e-3)),
         lambda: sb.phase_diagram(TRUE),
         fit_solved,
-    ],
-    ids=["solve", "stribeck_curve", "solve_batch", "phase_diagram", "fit"],
-)
-def test_matrices_are_factorised_with_one_blas_thread(two_threads, monkeypatch, call):
-    during = []
+    ]:
+        with subtests.test(call=call):
+            during = []
 
-    def spied(matrix, **options):
-        during.append(blas_threads())
-        raise FactorisedError
+            def spied(matrix, **options):
+                during.append(blas_threads())
+                raise FactorisedError
 
-    monkeypatch.setattr(lapack, "dgetrf", spied)
-    with pytest.raises(FactorisedError):
-        call()
-    assert during[0] == {1}
-    assert blas_threads() == {2}
+            monkeypatch.setattr(lapack, "dgetrf", spied)
+            with pytest.raises(FactorisedError):
+                call()
+            assert during[0] == {1}
+            assert blas_threads() == {2}
 
 
 def test_calls_that_overlap_keep_one_blas_thread_until_the_last_ends(two_threads):

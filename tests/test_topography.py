@@ -263,9 +263,8 @@ def test_heights_that_have_no_spectrum_are_refused(subtests):
         (np.arange(100.0), (0.0,), "spacing = 0.0 is not a positive number"),
         (np.arange(100.0), (1e-6, 1e-6), "neither a profile nor a map"),
     ]:
-        with subtests.test(z=z, spacing=spacing, words=words):
-            with pytest.raises(sb.InputError, match=words):
-                Topography(z, spacing)
+        with subtests.test(z=z, spacing=spacing, words=words), pytest.raises(sb.InputError, match=words):
+            Topography(z, spacing)
 
 
 def test_dead_points_are_filled_by_the_plane_around_them():

@@ -26,32 +26,22 @@ def minimum(kappa, load):
 
 
 def test_our_contact_share_and_friction_know_outlet_and_thickened_film(subtests):
-    for load in [2e-3, 0.2]:
-        for kappa in [3e-4, 1e-2]:
-            for film_ratio in [3, 5, 8]:
-                with subtests.test(load=load, kappa=kappa, film_ratio=film_ratio):
-                    groups = state(film_ratio, kappa, load)
-                    solved = sb.solve(groups)
-                    share, friction = (
-                        solved.contact_load_share,
-                        solved.friction(boundary_friction=1, beta=1, definition="published").total,
-                    )
-                    ours = mixed.contact_load_share(groups) / share - 1
-                    paper = mixed.contact_load_share(groups, "large") / share - 1
-                    assert abs(ours) < 0.09
-                    assert abs(mixed.friction(groups) / friction - 1) < 0.09
-                    if film_ratio == 3:
-                        assert paper > 0.2 and abs(ours) < 0.2 * paper
-                    # The better central film alone loses what the outlet adds.
-                    assert mixed.contact_load_share(groups, "central") < mixed.contact_load_share(groups, "large")
-
-
-def test_the_contact_share_is_least_good_where_thick_films_end_its_range(subtests):
-    for film_ratio, kappa in [(10 - 1e-6, 0.035), (C * 2**0.6 / 0.1, 0.1)]:
-        with subtests.test(film_ratio=film_ratio, kappa=kappa):
-            groups = state(film_ratio, kappa, 1e-3)
-            error = mixed.contact_load_share.function(groups) / sb.solve(groups).contact_load_share - 1
-            assert 0.1 < abs(error) < mixed.contact_load_share.worst
+    for load, kappa in ((2e-3, 3e-4), (2e-3, 1e-2), (0.2, 3e-4), (0.2, 1e-2)):
+        for film_ratio in (3, 8):
+            with subtests.test(load=load, kappa=kappa, film_ratio=film_ratio):
+                groups = state(film_ratio, kappa, load)
+                solved = sb.solve(groups)
+                friction = solved.friction(boundary_friction=1, beta=1, definition="published").total
+                ours, paper, central = (
+                    mixed.contact_load_share(groups, *film) / solved.contact_load_share - 1
+                    for film in ((), ("large",), ("central",))
+                )
+                assert abs(ours) < 0.09
+                assert abs(mixed.friction(groups) / friction - 1) < 0.09
+                if film_ratio == 3:
+                    assert paper > 0.2 and abs(ours) < 0.2 * paper
+                # The better central film alone loses what the outlet adds.
+                assert central < paper
 
 
 def test_the_film_with_asperities_is_the_law_of_the_paper_where_both_are_small():

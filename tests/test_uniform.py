@@ -141,6 +141,5 @@ def test_a_wedge_that_does_not_exist_is_refused(subtests):
         (0.1, -1.0, "fluid_number"),
         (0.1, np.inf, "fluid_number"),
     ]:
-        with subtests.test(load=load, number=number, name=name):
-            with pytest.raises(sb.InputError, match=f"{name} = "):
-                wedge.wedge(load, number)
+        with subtests.test(load=load, number=number, name=name), pytest.raises(sb.InputError, match=f"{name} = "):
+            wedge.wedge(load, number)
