@@ -43,26 +43,6 @@ class Coulomb(AsperityFriction):
         """The coefficient."""
         return f"{self.boundary_friction:g}"
 
-    @property
-    def is_frictionless(self) -> bool:
-        """Whether the coefficient is zero."""
-        return self.boundary_friction == 0
-
-    def scaled(self, by: float) -> Coulomb:
-        """Return the law with a larger coefficient.
-
-        Parameters
-        ----------
-        by : float
-            Factor on the coefficient [-].
-
-        Returns
-        -------
-        Coulomb
-            The law.
-        """
-        return Coulomb(by * self.boundary_friction)
-
     def factor(self, contact: Any) -> float:
         """Return the coefficient.
 

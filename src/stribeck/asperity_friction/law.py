@@ -10,11 +10,13 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import Any, ClassVar
+from dataclasses import replace
+from typing import Any, ClassVar, Self, cast
 
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.quantities.docstrings import told
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.schema import Input, Series, numbers_of
 from stribeck.quantities.units import InputError
@@ -41,13 +43,14 @@ class AsperityFriction(ABC):
         return 0.0, math.inf
 
     @property
-    @abstractmethod
     def is_frictionless(self) -> bool:
         """Whether the friction is zero whatever the state."""
+        return bool(getattr(self, self.size) == 0)
 
-    @abstractmethod
-    def scaled(self, by: float) -> AsperityFriction:
-        """Return a friction that is larger by a factor."""
+    @told({"by": "float\n    Factor on the size [-]."}, "AsperityFriction\n    The law, of the same kind.")
+    def scaled(self, by: float) -> Self:
+        """Return the law with a larger size: coefficient, or shear stress."""
+        return replace(cast(Any, self), **{self.size: by * getattr(self, self.size)})
 
     @abstractmethod
     def factor(self, contact: Any) -> float:

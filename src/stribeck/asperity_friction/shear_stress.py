@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,11 +11,15 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asperity_friction.law import AsperityFriction
 from stribeck.contact_laws.law import WithArea, area_slope
+from stribeck.quantities.docstrings import told
 from stribeck.quantities.outputs import AREA
 from stribeck.quantities.schema import Input, law
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["OverArea", "ShearStress"]
+__all__ = ["OF_STRESS", "OverArea", "ShearStress"]
+
+# What the methods say that return a stress.
+OF_STRESS = {"sliding_speed": "float\n    Sliding speed v, zero or positive [m/s]."}, "float\n    Shear stress [Pa]."
 
 
 class OverArea(AsperityFriction):
@@ -139,44 +142,9 @@ class ShearStress(OverArea):
         """Whether the exponent is not zero."""
         return self.speed_exponent != 0
 
-    @property
-    def is_frictionless(self) -> bool:
-        """Whether the stress is zero."""
-        return self.shear_stress == 0
-
-    def scaled(self, by: float) -> ShearStress:
-        """Return the law with a larger stress.
-
-        Parameters
-        ----------
-        by : float
-            Factor on the stress [-].
-
-        Returns
-        -------
-        ShearStress
-            The law.
-        """
-        return replace(self, shear_stress=by * self.shear_stress)
-
+    @told(*OF_STRESS, "InputError\n    At rest with a negative exponent, where the stress would be infinite.")
     def stress(self, sliding_speed: float) -> float:
-        """Return the shear stress at a sliding speed.
-
-        Parameters
-        ----------
-        sliding_speed : float
-            Sliding speed v, zero or positive [m/s].
-
-        Returns
-        -------
-        float
-            Shear stress [Pa].
-
-        Raises
-        ------
-        InputError
-            At rest with a negative exponent, where the stress would be infinite.
-        """
+        """Return the shear stress at a sliding speed."""
         if self.speed_exponent == 0:
             return self.shear_stress
         if sliding_speed == 0 and self.speed_exponent < 0:

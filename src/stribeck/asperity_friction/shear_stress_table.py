@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
-from stribeck.asperity_friction.shear_stress import OverArea
+from stribeck.asperity_friction.shear_stress import OF_STRESS, OverArea
+from stribeck.quantities.docstrings import told
 from stribeck.quantities.schema import Series, law
 from stribeck.quantities.units import InputError
 
@@ -77,39 +78,13 @@ class ShearStressTable(OverArea):
         """False: stresses of a table are positive."""
         return False
 
-    def scaled(self, by: float) -> ShearStressTable:
-        """Return the table with larger stresses.
-
-        Parameters
-        ----------
-        by : float
-            Factor on the stresses [-].
-
-        Returns
-        -------
-        ShearStressTable
-            The table.
-        """
+    def scaled(self, by: float) -> Self:
+        """Return the table with larger stresses, as :meth:`AsperityFriction.scaled`."""
         return replace(self, shear_stresses=[by * each for each in self.shear_stresses])
 
+    @told(*OF_STRESS, "InputError\n    Outside the speeds of the table.")
     def stress(self, sliding_speed: float) -> float:
-        """Return the shear stress at a sliding speed.
-
-        Parameters
-        ----------
-        sliding_speed : float
-            Sliding speed within the table [m/s].
-
-        Returns
-        -------
-        float
-            Shear stress [Pa].
-
-        Raises
-        ------
-        InputError
-            Outside the speeds of the table.
-        """
+        """Return the shear stress at a sliding speed."""
         low, high = self.sliding_speeds[0], self.sliding_speeds[-1]
         # A curve that ends at the last speed of the table may miss it by rounding.
         if not low * (1 - 1e-9) <= sliding_speed <= high * (1 + 1e-9):

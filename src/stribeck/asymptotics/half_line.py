@@ -22,7 +22,7 @@ from stribeck._types import Array
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.quantities.lazy import cached_property
-from stribeck.solids.half_plane import deflection_operator
+from stribeck.solids.half_plane import nodal_deflection
 
 EQUAL_PANELS_UP_TO = 2.0  # Distance to which panels have equal width; farther out each is as wide as its distance.
 
@@ -112,7 +112,7 @@ class HalfLine:
     @cached_property
     def deflection(self) -> Array:
         """Matrix from nodal pressures to the deflection, shape (n, n)."""
-        return deflection_operator(self.mesh, self.xi)[:, : -self.order]
+        return nodal_deflection(self.mesh, beyond=False)[: -self.order, : -self.order]
 
     @cached_property
     def deflection_of_gradient(self) -> Array:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import scipy
@@ -21,7 +21,7 @@ from stribeck._types import Array, Indices
 from stribeck.contact_laws.persson_integral import Integral, tabulate
 from stribeck.contact_laws.spectrum import OF_HEIGHT, SCALED, TOO_HIGH, SelfAffine, Spectrum, height_of_roughness, table_of
 from stribeck.numerics.trace import value_of
-from stribeck.quantities.docstrings import told
+from stribeck.quantities.docstrings import Described, told
 from stribeck.quantities.results import ByValue
 from stribeck.quantities.schema import Input
 
@@ -54,32 +54,13 @@ SEALING_CONTACT_FRACTION = 0.42  # Fraction of the surface in contact above whic
 
 
 @dataclass(frozen=True, eq=False)
-class PerssonLaw(ByValue):
+class PerssonLaw(ByValue, Described):
     r"""Pressure against separation, from first touch to full contact, in the units of the exponential law.
 
     .. math:: \Phi = \frac{p}{\beta E^*} \text{ at } s = \frac{\alpha u}{h_\mathrm{rms}}, \qquad
               \Phi \to e^{-s} \text{ as } s \to \infty
 
     Made by :func:`persson_law`.
-
-    Attributes
-    ----------
-    alpha : float
-        Decay of the exponential limit, alpha [-].
-    beta : float
-        Strength of the exponential limit, beta [-].
-    rms_height : float
-        Root mean square of the roughness [m].
-    rms_slope : float
-        Root mean square of its gradient [1].
-    longest_wavelength : float
-        Wavelength of the longest roughness, 2 pi/q0 [m].
-    gamma : float
-        Reduction of the elastic energy [-].
-    error : float
-        Largest error of ln Phi between the points of the table, measured when it was made [-].
-    name : str
-        Name that outputs print.
 
     Notes
     -----
@@ -88,16 +69,16 @@ class PerssonLaw(ByValue):
     Source: [YP08]; docs/surfaces.md, "The law of Persson".
     """
 
-    alpha: float
-    beta: float
-    rms_height: float
-    rms_slope: float
-    longest_wavelength: float
-    gamma: float
-    error: float
+    alpha: Annotated[float, "decay of the exponential limit, alpha", "1"]
+    beta: Annotated[float, "strength of the exponential limit, beta", "1"]
+    rms_height: Annotated[float, "root mean square of the roughness", "m"]
+    rms_slope: Annotated[float, "root mean square of its gradient", "1"]
+    longest_wavelength: Annotated[float, "wavelength of the longest roughness, 2 pi/q0", "m"]
+    gamma: Annotated[float, "reduction of the elastic energy", "1"]
+    error: Annotated[float, "largest error of ln Phi between the points of the table, measured when it was made", "1"]
     _knots: Array = field(repr=False)
     _coefficients: Array = field(repr=False)
-    name: str = "persson"
+    name: Annotated[str, "name that outputs print"] = "persson"
 
     @property
     def parameters(self) -> dict[str, float | str]:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 from stribeck.fluids.description import Fluid
+from stribeck.quantities.docstrings import Described
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError, show, to_si
 
@@ -14,21 +15,8 @@ _TEMPERATURE = re.compile(r"\s*([+-]?[0-9]+(?:\.[0-9]*)?)\s*(degC|°C|deg C|C|K)
 
 
 @dataclass(frozen=True)
-class Liquid:
+class Liquid(Described):
     """A liquid under given conditions.
-
-    Attributes
-    ----------
-    name : str
-        What it is, with its conditions.
-    viscosity : float
-        Viscosity at ambient pressure and low rate [Pa s].
-    fluid : Fluid
-        How it depends on pressure and shear rate.
-    source : str
-        Where the numbers are from.
-    thinning_rate : float or None
-        Shear rate at which it begins to thin, where that is known of a liquid that has no law of thinning [1/s].
 
     Examples
     --------
@@ -38,11 +26,15 @@ class Liquid:
     6.0
     """
 
-    name: str
-    viscosity: float
-    fluid: Fluid
-    source: str
-    thinning_rate: float | None = None
+    name: Annotated[str, "what it is, with its conditions"]
+    viscosity: Annotated[float, "viscosity at ambient pressure and low rate", "Pa s"]
+    fluid: Annotated[Fluid, "how it depends on pressure and shear rate"]
+    source: Annotated[str, "where the numbers are from"]
+    thinning_rate: Annotated[
+        float | None,
+        "shear rate at which it begins to thin, where known of one without a law of thinning",
+        "1/s",
+    ] = None
 
     @property
     def inputs(self) -> dict[str, Any]:

@@ -14,8 +14,8 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -59,36 +59,16 @@ class _Fit:
 
 @dataclass(frozen=True, repr=False)
 class FlowCurve(Told, Tabled):
-    """A viscosity measured over the shear rate, and the law through it.
+    """A viscosity measured over the shear rate, and the law through it."""
 
-    Attributes
-    ----------
-    rate : ndarray
-        Shear rates [1/s].
-    measured : ndarray
-        Viscosities there [Pa s].
-    viscosity : float
-        Viscosity of the law, that at low rates; of a power law that at one over its time [Pa s].
-    law : RateLaw or None
-        The law of :mod:`stribeck.fluids`, in SI units; None where the liquid does not thin.
-    errors : dict of str to float
-        Standard errors of ``viscosity`` and of the numbers of the law.
-    misfit : float
-        Root mean square of the relative deviation of the values from the law [-].
-    misfits : dict of str to float
-        That of each law that was tried.
-    notes : tuple of str
-        What must be known before the law is used.
-    """
-
-    rate: Array
-    measured: Array
-    viscosity: float
-    law: RateLaw | None
-    errors: dict[str, float]
-    misfit: float
-    misfits: dict[str, float]
-    notes: tuple[str, ...] = field(default=())
+    rate: Annotated[Array, "shear rates", "1/s"]
+    measured: Annotated[Array, "viscosities there", "Pa s"]
+    viscosity: Annotated[float, "viscosity of the law, that at low rates; of a power law that at one over its time", "Pa s"]
+    law: Annotated[RateLaw | None, "the law of :mod:`stribeck.fluids`, in SI units; None where the liquid does not thin"]
+    errors: Annotated[dict[str, float], "standard errors of ``viscosity`` and of the numbers of the law"]
+    misfit: Annotated[float, "root mean square of the relative deviation of the values from the law", "1"]
+    misfits: Annotated[dict[str, float], "that of each law that was tried"]
+    notes: Annotated[tuple[str, ...], "what must be known before the law is used"] = ()
 
     @cached_property
     def fluid(self) -> Fluid:

@@ -25,13 +25,14 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import Annotated, Any
 
 from stribeck.fluids.description import Fluid
 from stribeck.fluids.liquids import Liquid, celsius, check_temperature
 from stribeck.fluids.oils import OIL_EYRING_STRESS, SOURCE, iso_vg, oil
 from stribeck.fluids.rheology.rate_laws import Carreau, Cross
 from stribeck.fluids.rheology.viscosity import Roelands
+from stribeck.quantities.docstrings import Described
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["PRESETS", "Preset", "glycerol_water", "water"]
@@ -41,28 +42,14 @@ GLYCEROL_EYRING_STRESS = 3e7  # Stress kT per molecule of glycerol, rounded down
 
 
 @dataclass(frozen=True)
-class Preset:
-    """A row of the table of liquids: call it with its conditions.
+class Preset(Described):
+    """A row of the table of liquids: call it with its conditions."""
 
-    Attributes
-    ----------
-    label : str
-        What it is.
-    conditions : dict
-        Conditions with their usual values.
-    make : callable
-        From conditions to a :class:`Liquid`.
-    source : str
-        Where the numbers are from.
-    range : str
-        Where they hold.
-    """
-
-    label: str
-    conditions: Mapping[str, Any]
-    make: Callable[..., Liquid]
-    source: str
-    range: str
+    label: Annotated[str, "what it is"]
+    conditions: Annotated[Mapping[str, Any], "conditions with their usual values"]
+    make: Annotated[Callable[..., Liquid], "from conditions to a :class:`Liquid`"]
+    source: Annotated[str, "where the numbers are from"]
+    range: Annotated[str, "where they hold"]
 
     def __call__(self, **conditions: Any) -> Liquid:
         """Return the liquid under these conditions."""

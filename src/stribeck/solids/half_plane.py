@@ -165,7 +165,12 @@ def nodes_at_infinity(centre: Array, half_width: Array, nodes: Array) -> Array:
 
 
 def nodal_deflection(mesh: Mesh, beyond: bool = True) -> Array:
-    """Return :func:`deflection_operator` at the nodes of the mesh, in Fortran order, with the far panel only if ``beyond``."""
+    r"""Return the matrix from nodal pressures to the deflection at the nodes, in Fortran order.
+
+    .. math:: w(x_i) = -\frac1\pi \int p(y) \ln|x_i - y| \, dy = \sum_j D_{ij} p(x_j)
+
+    Pressures on the panel through infinity deflect something only if ``beyond``.
+    """
     order, panels = mesh.order, mesh.panels
     rule, inner = reference(order), mesh.nodes[:-order]
     # By columns, so that the operator comes in Fortran order: what panel k does at the nodes of panel l is [k, :, l, :].
@@ -201,41 +206,6 @@ def _columns_of_infinity(mesh: Mesh) -> Array:
     at_infinity = _at_centre(order) + np.log(mesh.half_widths[-1]) * rule.weights
     factor = mesh.half_widths[-1] * mesh.stretch[-order:]
     return np.asarray((factor * (tail - at_infinity)).T)
-
-
-def deflection_operator(mesh: Mesh, points: Array | None = None) -> Array:
-    r"""Return the matrix from nodal pressures to the deflection.
-
-    .. math:: w(x_i) = -\frac1\pi \int p(y) \ln|x_i - y| \, dy = \sum_j D_{ij} p(x_j)
-    """
-    order = mesh.order
-    rule = reference(order)
-    x = mesh.nodes if points is None else np.asarray(points, dtype=float)
-    inner = mesh.nodes[:-order]
-    kernel = np.empty((len(x), mesh.panels, order))
-
-    distance = np.abs(x[:, None] - inner)
-    s = (x[:, None] - mesh.centres[:-1]) / mesh.half_widths[:-1]
-    near_by = near_distance(order)
-    target, source = np.nonzero(np.abs(s) < near_by)
-    distance[distance == 0] = 1.0
-    kernel[:, :-1, :] = (np.log(distance) * mesh.weights[:-order]).reshape(len(x), mesh.panels - 1, order)
-    half = mesh.half_widths[source][:, None]
-    near = log_moments(s[target, source], order) @ _from_moments(order)
-    kernel[target, source, :] = half * (near + np.log(half) * rule.weights)
-
-    half_tail = mesh.half_widths[-1]
-    t_source = mesh.local[-1]
-    close = np.nonzero(np.abs(x) * half_tail * near_by > 1.0)[0]
-    ratio = t_source * x[:, None]
-    ratio[close] = 0.0
-    tail = np.log1p(-ratio) * rule.weights
-    t_target = 1.0 / x[close] if len(close) else np.empty(0)
-    moments = log_moments(t_target / half_tail, order) @ _from_moments(order)
-    tail[close] = moments + np.log(half_tail / np.abs(t_target))[:, None] * rule.weights
-    at_infinity = _at_centre(order) + np.log(half_tail) * rule.weights
-    kernel[:, -1, :] = half_tail * (tail - at_infinity) * mesh.stretch[-order:]
-    return np.asarray(kernel.reshape(len(x), mesh.size) / -np.pi)
 
 
 def deflection_by_half_tail(tail: HalfTail) -> Array:

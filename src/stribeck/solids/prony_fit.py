@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import math
 import os
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -46,37 +46,17 @@ POISSON_RATIO = Input(
 
 @dataclass(frozen=True, repr=False)
 class PronyFit(Told, Tabled):
-    """A rubber's complex modulus over the frequency, and the Prony series through it.
+    """A rubber's complex modulus over the frequency, and the Prony series through it."""
 
-    Attributes
-    ----------
-    frequency : ndarray
-        Angular frequencies [rad/s].
-    storage, loss : ndarray
-        Storage and loss modulus there [Pa].
-    solid : Prony
-        The body of :mod:`stribeck.solids`, in SI units.
-    relaxed_modulus : float
-        Young's modulus at rest, that of the series [Pa].
-    poisson_ratio : float
-        Poisson's ratio, which does not relax [-].
-    misfit : float
-        Root mean square of the relative deviations of storage and loss modulus [-].
-    largest_misfit : float
-        Largest relative deviation of either [-].
-    notes : tuple of str
-        What must be known before the body is used.
-    """
-
-    frequency: Array
-    storage: Array
-    loss: Array
-    solid: Prony
-    relaxed_modulus: float
-    poisson_ratio: float
-    misfit: float
-    largest_misfit: float
-    notes: tuple[str, ...] = field(default=())
+    frequency: Annotated[Array, "angular frequencies", "rad/s"]
+    storage: Annotated[Array, "storage modulus there", "Pa"]
+    loss: Annotated[Array, "loss modulus there", "Pa"]
+    solid: Annotated[Prony, "the body of :mod:`stribeck.solids`, in SI units"]
+    relaxed_modulus: Annotated[float, "Young's modulus at rest, that of the series", "Pa"]
+    poisson_ratio: Annotated[float, "Poisson's ratio, which does not relax", "1"]
+    misfit: Annotated[float, "root mean square of the relative deviations of storage and loss modulus", "1"]
+    largest_misfit: Annotated[float, "largest relative deviation of either", "1"]
+    notes: Annotated[tuple[str, ...], "what must be known before the body is used"] = ()
 
     @cached_property
     def modulus(self) -> float:
