@@ -34,7 +34,7 @@ from stribeck.equations.film import closed_gap
 from stribeck.equations.point.mesh_choice import Resolution
 from stribeck.equations.point.minimum import reach_of
 from stribeck.equations.point.observables import SMOOTH, observables
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.settings import (
     KINKED_FLOOR,
     KINKED_SAFETY,

@@ -35,7 +35,7 @@ import stribeck as sb
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.point.mesh_choice import Resolution
 from stribeck.equations.point.observables import observables
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.settings import MAX_REFINEMENTS
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.solver.point.estimate import WITHOUT_TOLERANCE, Pair

@@ -19,7 +19,7 @@ from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.groups import Groups
 from stribeck.curves.stribeck_curve import stribeck_curve
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.solver.solve import solve
 from stribeck.solver.solve_error import SolveError
 

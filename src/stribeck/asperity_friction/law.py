@@ -50,7 +50,8 @@ class AsperityFriction(ABC):
     @told({"by": "float\n    Factor on the size [-]."}, "AsperityFriction\n    The law, of the same kind.")
     def scaled(self, by: float) -> Self:
         """Return the law with a larger size: coefficient, or shear stress."""
-        return replace(cast(Any, self), **{self.size: by * getattr(self, self.size)})
+        found: Self = replace(cast(Any, self), **{self.size: by * getattr(self, self.size)})
+        return found
 
     @abstractmethod
     def factor(self, contact: Any) -> float:

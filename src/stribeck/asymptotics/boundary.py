@@ -51,12 +51,13 @@ _slow = partial(
     formula,
     plane="mixed",
     limits=SMALL_SHARE_RANGE,
+    undefined="from load 1 on",
     small="relative_roughness",
     error_order=2 / 3,
 )
 
 
-@_slow(undefined="from load 1 on", worst=0.07, source="[BP] Eqs. (fluid-normal), (fluid-normal-dl), with 2/pi")
+@_slow(worst=0.07, source="[BP] Eqs. (fluid-normal), (fluid-normal-dl), with 2/pi")
 def fluid_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bool = False) -> Value:
     r"""Return the part of the load that the fluid carries at slow speed.
 
@@ -79,7 +80,6 @@ def fluid_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bool
 
 @_slow(
     limits=SLOW_RANGE,
-    undefined="from load 1 on",
     worst=0.017,
     small="fluid_number",
     error_order=4,
@@ -97,7 +97,7 @@ def contact_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bo
     return 1 - fluid_load_share.function(groups, form, printed)
 
 
-@_slow(undefined="from load 1 on", worst=0.075, source="theory.md, section 6")
+@_slow(worst=0.075, source="theory.md, section 6")
 def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "published") -> Value:
     r"""Return the viscous friction at slow speed.
 
@@ -123,7 +123,6 @@ def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "publ
 
 @_slow(
     limits=(*SLOW_RANGE, Limit("beta/mu0", 0.0, 3.0)),
-    undefined="from load 1 on",
     worst=0.017,
     source="[BP] Eqs. (friction_contact), (fluid-normal-dl), with its viscous part",
 )

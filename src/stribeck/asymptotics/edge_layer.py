@@ -28,13 +28,12 @@ from stribeck.numerics.threads import one_blas_thread
 LAYER_LOAD = 0.5 * np.pi  # Integral of P - P_H over the layer.
 
 
-def _coordinate(groups: Groups, x: Value, printed: bool) -> Array:
-    kappa = groups.relative_roughness
-    edge = 1.0 if printed else 1.0 - kappa
-    return np.divide(np.abs(x) - edge, kappa ** (2 / 3))
+def coordinate(x: Value, edge: Value, kappa: Value) -> Array:
+    """Return the distance from an edge in widths of its layer."""
+    return np.divide(np.abs(x) - edge, np.power(kappa, 2 / 3))
 
 
-_edge = partial(
+at_edge = partial(
     formula,
     plane="rest",
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-6, 1e-2)),
@@ -44,7 +43,7 @@ _edge = partial(
 )
 
 
-@_edge(uses=("load", "relative_roughness"), worst=0.025)
+@at_edge(uses=("load", "relative_roughness"), worst=0.025)
 def gap(groups: Groups, x: Value, printed: bool = False) -> Value:
     r"""Return the gap at the edges of a rough contact at rest.
 
@@ -57,11 +56,11 @@ def gap(groups: Groups, x: Value, printed: bool = False) -> Value:
     H(0) is :data:`.constants.EDGE_GAP`.
     """
     kappa = groups.relative_roughness
-    H = layer().gap(_coordinate(groups, x, printed))
+    H = layer().gap(coordinate(x, 1.0 if printed else 1.0 - kappa, kappa))
     return kappa * (-0.5 * np.log(groups.load) - np.log(kappa) / 3 + H)
 
 
-@_edge(uses=("relative_roughness",), worst=0.07)
+@at_edge(uses=("relative_roughness",), worst=0.07)
 def contact_pressure(groups: Groups, x: Value, printed: bool = False) -> Value:
     r"""Return the contact pressure at the edges of a rough contact at rest.
 
@@ -72,7 +71,7 @@ def contact_pressure(groups: Groups, x: Value, printed: bool = False) -> Value:
     Compared with the solver within 5 widths of the edge; as printed the error is 9 % and falls as kappa**(1/3) only.
     """
     kappa = groups.relative_roughness
-    return kappa ** (1 / 3) * np.exp(-layer().gap(_coordinate(groups, x, printed)))
+    return kappa ** (1 / 3) * np.exp(-layer().gap(coordinate(x, 1.0 if printed else 1.0 - kappa, kappa)))
 
 
 @lru_cache(maxsize=4)

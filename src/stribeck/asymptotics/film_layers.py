@@ -31,7 +31,7 @@ _layer = partial(
 )
 
 
-@_layer(predicts="gap", worst=0.04)
+@_layer(worst=0.04)
 def gap_inlet(groups: Groups, x: Value) -> Value:
     r"""Return the gap of a slow smooth film at its inlet.
 
@@ -42,7 +42,7 @@ def gap_inlet(groups: Groups, x: Value) -> Value:
     return groups.speed**0.6 * inlet().gap(np.divide(np.subtract(-1.0, x), groups.speed**0.4))
 
 
-@_layer(predicts="gap", worst=0.055)
+@_layer(worst=0.055)
 def gap_outlet(groups: Groups, x: Value) -> Value:
     r"""Return the gap of a slow smooth film at its outlet.
 
@@ -54,7 +54,7 @@ def gap_outlet(groups: Groups, x: Value) -> Value:
     return groups.speed**0.6 * outlet().gap(np.divide(np.subtract(x, 1.0), groups.speed**0.4))
 
 
-@_layer(predicts="fluid_pressure", worst=0.09)
+@_layer(worst=0.09)
 def fluid_pressure_inlet(groups: Groups, x: Value) -> Value:
     r"""Return the fluid pressure of a slow smooth film at its inlet.
 
@@ -65,7 +65,7 @@ def fluid_pressure_inlet(groups: Groups, x: Value) -> Value:
     return groups.speed**0.2 * inlet().pressure(np.divide(np.subtract(-1.0, x), groups.speed**0.4))
 
 
-@_layer(predicts="fluid_pressure", worst=0.095)
+@_layer(worst=0.095)
 def fluid_pressure_outlet(groups: Groups, x: Value) -> Value:
     r"""Return the fluid pressure of a slow smooth film at its outlet.
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.asymptotics.constants import BALL_FILM_CONSTANT, FILM_CONSTANT
-from stribeck.asymptotics.documentation import choices, completed
+from stribeck.asymptotics.documentation import VALUES, choices, completed
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.contact import model_words
 from stribeck.contacts.groups import Geometry, Groups
@@ -276,12 +276,12 @@ def formula(
 ) -> Callable[[Callable[Concatenate[Groups, Arguments], Value]], Formula[Arguments]]:
     """Return the decorator that makes a function a :class:`Formula`, of which ``entry`` are the other attributes.
 
-    ``predicts`` is the name of the function by default, and ``undefined`` states where the value is nan.  What the docstring
-    leaves out is filled in, see :mod:`stribeck.asymptotics.documentation`.
+    ``predicts`` is by default the quantity with which the name of the function begins; ``undefined`` states where the value
+    is nan.  What the docstring leaves out is filled in, see :mod:`stribeck.asymptotics.documentation`.
     """
 
     def decorate(function: Callable[Concatenate[Groups, Arguments], Value]) -> Formula[Arguments]:
-        quantity = predicts or function.__name__
+        quantity = predicts or max((each for each in VALUES if function.__name__.startswith(each)), key=len)
         made = Formula(function, quantity, **entry)
         if function.__doc__ is not None:  # as it is under `python -OO`
             function.__doc__ = completed(function, quantity, made.uses, made.geometry, undefined, made.evidence)

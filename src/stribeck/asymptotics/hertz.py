@@ -13,7 +13,7 @@ from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.contacts.groups import Groups
 from stribeck.solids import hertz
 
-_dry = partial(
+dry = partial(
     formula,
     uses=(),
     plane="mixed",
@@ -23,7 +23,7 @@ _dry = partial(
 )
 
 
-@_dry(
+@dry(
     limits=(Limit("speed", 0, 1e-7), Limit("relative_roughness", 0, 1e-4)),
     worst=0.05,
     error_order=1 / 3,
@@ -40,7 +40,7 @@ def pressure(groups: Groups, x: Value) -> Value:
     return hertz.pressure(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
 
 
-@_dry(worst=1e-3, source="[BP] Eq. (Hertz)")
+@dry(worst=1e-3, source="[BP] Eq. (Hertz)")
 def gap(groups: Groups, x: Value) -> Value:
     r"""Return the gap around the dry contact.
 
@@ -52,7 +52,7 @@ def gap(groups: Groups, x: Value) -> Value:
     return hertz.gap(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
 
 
-@_dry(worst=1e-3, source="[BP] Eq. (vertical_position_Hz)")
+@dry(worst=1e-3, source="[BP] Eq. (vertical_position_Hz)")
 def offset(groups: Groups) -> Value:
     r"""Return the offset of the dry contact.
 

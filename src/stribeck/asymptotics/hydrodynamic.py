@@ -44,7 +44,6 @@ _any_speed = partial(_smooth, limits=())
 
 
 @_slow(
-    predicts="central_gap",
     worst=0.015,
     source="[BP] Eq. (central_thickness_large), with c = 0.44583 for the printed 0.44, which is 1.3 % low",
 )
@@ -58,7 +57,7 @@ def central_gap_large(groups: Groups, *, printed: bool = False) -> Value:
     return (PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT) * groups.speed**0.6
 
 
-@_slow(predicts="flux_gap", worst=0.015, source="[BP] below Eq. (hstar), with c = 0.44583 for the printed 0.44")
+@_slow(worst=0.015, source="[BP] below Eq. (hstar), with c = 0.44583 for the printed 0.44")
 def flux_gap_large(groups: Groups) -> Value:
     r"""Return the flux gap at large deformation, speed group -> 0.
 
@@ -69,7 +68,7 @@ def flux_gap_large(groups: Groups) -> Value:
     return FILM_CONSTANT * groups.speed**0.6
 
 
-@_slow(predicts="minimum_gap", worst=0.012, source="ours; :mod:`stribeck.asymptotics.film_layers` solves the outlet by itself")
+@_slow(worst=0.012, source="ours; :mod:`stribeck.asymptotics.film_layers` solves the outlet by itself")
 def minimum_gap_large(groups: Groups) -> Value:
     r"""Return the minimum gap, at the outlet, at large deformation, speed group -> 0.
 
@@ -101,7 +100,7 @@ def friction_large(groups: Groups, beta: float = 1.0, *, printed: bool = False) 
     return 4 / (3 * math.pi * c) * beta * groups.load**0.5 * groups.speed**0.4
 
 
-@_fast(predicts="central_gap", worst=0.021, source="[BP] Eq. (film_thickness_small_deformation)")
+@_fast(worst=0.021, source="[BP] Eq. (film_thickness_small_deformation)")
 def central_gap_small(groups: Groups) -> Value:
     r"""Return the gap at x = 0 at small deformation, speed group -> infinity.
 
@@ -112,7 +111,7 @@ def central_gap_small(groups: Groups) -> Value:
     return np.power(groups.speed, 2 / 3) / 24 ** (1 / 3)
 
 
-@_fast(predicts="flux_gap", worst=0.002, source="[BP] Eq. (fields_small_deformation)")
+@_fast(worst=0.002, source="[BP] Eq. (fields_small_deformation)")
 def flux_gap_small(groups: Groups) -> Value:
     r"""Return the flux gap at small deformation, speed group -> infinity.
 
@@ -124,7 +123,6 @@ def flux_gap_small(groups: Groups) -> Value:
 
 
 @_fast(
-    predicts="gap",
     worst=0.017,
     error_order=1 / 3,
     source="[BP] Eq. (fields_small_deformation)",

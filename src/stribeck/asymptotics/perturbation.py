@@ -183,14 +183,13 @@ def shear(load: Value) -> Value:
     return of_load(load, lambda c: 2 * c.integral(1 / c.H + 3 * c.first(2)))
 
 
-_expansion = partial(formula, plane="mixed", small="relative_roughness", error_order=2 / 3)
+_expansion = partial(formula, plane="mixed", undefined="from load 1 on", small="relative_roughness", error_order=2 / 3)
 
 
 @_expansion(
     uses=("load", "relative_roughness"),
     plane="rest",
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-3)),
-    undefined="from load 1 on",
     worst=0.009,
     source="[BP] Appendix D",
 )
@@ -205,9 +204,7 @@ def flux_gap(groups: Groups) -> Value:
 
 
 @_expansion(
-    predicts="fluid_pressure",
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 1e-4)),
-    undefined="from load 1 on",
     worst=0.07,
     source="[BP] Eqs. (first-order_thin-film) and (pf1), which lack the cube that Appendix D has",
 )
@@ -237,7 +234,6 @@ def _first_pressure(load: Value, x: Value, power: int = 3) -> Array:
 
 
 @_expansion(
-    predicts="gap",
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-3), Limit("paper_fluid_share", 0, 0.1)),
     undefined="outside the contact, where this has no value, and from load 1 on",
     worst=0.06,
@@ -258,9 +254,7 @@ def gap_first(groups: Groups, x: Value) -> Value:
 
 
 @_expansion(
-    predicts="fluid_pressure",
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 0.01)),
-    undefined="from load 1 on",
     worst=0.085,
     source="[BP] Eqs. (pf1), with cubed denominator, and (p2)",
 )

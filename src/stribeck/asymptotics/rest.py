@@ -17,7 +17,7 @@ from stribeck.asymptotics.formula import Limit, Value, formula, second
 from stribeck.contacts.groups import Groups
 from stribeck.solids import hertz
 
-_large_indentation = partial(
+large_indentation = partial(
     formula,
     uses=("load", "relative_roughness"),
     plane="rest",
@@ -27,7 +27,7 @@ _large_indentation = partial(
 )
 
 
-@_large_indentation(
+@large_indentation(
     undefined="from the edge of the contact outwards, where this has no value",
     worst=0.03,
     source="[BP] Eq. (central_region_contact)",
@@ -46,7 +46,7 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
     return leading + second(terms) * np.square(kappa) / below
 
 
-@_large_indentation(worst=0.03, source="[BP] Eq. (central_region_contact); the second term is ours")
+@large_indentation(worst=0.03, source="[BP] Eq. (central_region_contact); the second term is ours")
 def central_gap(groups: Groups, terms: int = 1) -> Value:
     r"""Return the gap at the centre of a rough contact at rest.
 
@@ -57,7 +57,7 @@ def central_gap(groups: Groups, terms: int = 1) -> Value:
     return gap.function(groups, 0.0, terms)
 
 
-@_large_indentation(worst=1e-4, error_order=2, source="theory.md, section 7")
+@large_indentation(worst=1e-4, error_order=2, source="theory.md, section 7")
 def offset(groups: Groups, terms: int = 1) -> Value:
     r"""Return the offset of a rough contact at rest.
 
@@ -72,7 +72,7 @@ def offset(groups: Groups, terms: int = 1) -> Value:
     return leading + second(terms) * np.square(kappa) / 3
 
 
-_small_indentation = partial(
+small_indentation = partial(
     formula,
     uses=("load", "relative_roughness"),
     plane="rest",
@@ -82,7 +82,7 @@ _small_indentation = partial(
 )
 
 
-@_small_indentation(predicts="gap", worst=0.011, source="[BP] Eq. (separation_small_indentation); the second term is ours")
+@small_indentation(worst=0.011, source="[BP] Eq. (separation_small_indentation); the second term is ours")
 def gap_small_indentation(groups: Groups, x: Value, terms: int = 1) -> Value:
     r"""Return the gap at rest of a very rough contact, which is hardly deflected.
 
@@ -95,9 +95,7 @@ def gap_small_indentation(groups: Groups, x: Value, terms: int = 1) -> Value:
     return central_gap_small_indentation.function(groups, terms) + np.square(x) / 2
 
 
-@_small_indentation(
-    predicts="central_gap", worst=0.009, source="[BP] Eq. (separation_small_indentation); the second term is ours"
-)
+@small_indentation(worst=0.009, source="[BP] Eq. (separation_small_indentation); the second term is ours")
 def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
     r"""Return the gap at the centre of a very rough contact at rest.
 
@@ -110,7 +108,7 @@ def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
     return leading + second(terms) * math.log(2) / 4
 
 
-@_small_indentation(predicts="offset", worst=3e-4, error_order=2, source="ours, from [BP] Section 'Small indentation limit'")
+@small_indentation(worst=3e-4, error_order=2, source="ours, from [BP] Section 'Small indentation limit'")
 def offset_small_indentation(groups: Groups) -> Value:
     r"""Return the offset of a very rough contact at rest.
 
@@ -124,8 +122,7 @@ def offset_small_indentation(groups: Groups) -> Value:
     return central_gap_small_indentation.function(groups, terms=2) - deflection
 
 
-@_small_indentation(
-    predicts="contact_pressure",
+@small_indentation(
     uses=("relative_roughness",),
     worst=0.018,
     source="[BP] Section 'Small indentation limit', without its minus sign",

@@ -43,12 +43,12 @@ DIFFERENCE_STEP = 1e-4  # Step of the differences in ln(speed).
 
 ROUGHNESS_RANGE = (1e-7, 1e3)  # Relative roughness between which the merging of the uniform law is sought.
 
-_at_minimum = partial(formula, uses=("load", "roughness"), plane="mixed", limits=FIT_RANGE)
-
-
-@_at_minimum(
-    undefined="where the form has no minimum", worst=0.044, source="ours; [BP] Eqs. (Lambda_solution) and (Lambda_asymptotic)"
+_at_minimum = partial(
+    formula, uses=("load", "roughness"), plane="mixed", limits=FIT_RANGE, undefined="where the form has no minimum"
 )
+
+
+@_at_minimum(worst=0.044, source="ours; [BP] Eqs. (Lambda_solution) and (Lambda_asymptotic)")
 def separation_at_minimum(
     groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, form: Form = "uniform", *, printed: bool = False
 ) -> Value:
@@ -85,7 +85,6 @@ def separation_at_minimum(
 
 
 @_at_minimum(
-    undefined="where the form has no minimum",
     worst=0.069,
     source="ours; [BP] Eq. (lambda_min), which neglects the logarithm of a logarithm",
 )
@@ -113,7 +112,6 @@ def speed_at_minimum(
 
 
 @_at_minimum(
-    undefined="where the form has no minimum",
     worst=0.049,
     source="ours; [BP] Eq. (minimal_friction), with the sign of the second exponent corrected",
 )

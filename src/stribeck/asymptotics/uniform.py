@@ -27,12 +27,11 @@ SHEAR_COEFFICIENTS = (0.6179, 8.341, 0.3064, 0.05872)  # Fitted coefficients of 
 FIRST_MOMENT_COEFFICIENTS = (0.3524, 0.7752, 0.4341, 1.0889, 4.999)
 MOMENT_COEFFICIENTS = (0.9251, 3.692, 11.52, 0.4319, 7.886, 0.7303, 1.237)  # Fitted coefficients of the moment at any speed.
 
-_uniform = partial(formula, plane="mixed")
+_uniform = partial(formula, plane="mixed", undefined="from load 1 on")
 
 
 @_uniform(
     limits=(*FIT_RANGE, Limit("film_ratio", 0.0, 12.0)),
-    undefined="from load 1 on",
     worst=0.75,
     source="ours, with S, G and the film's speed of :mod:`load_sharing`",
 )
@@ -55,7 +54,6 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
 
 @_uniform(
     limits=(*FIT_RANGE, Limit("beta/mu0", 1e-3, 1.0)),
-    undefined="from load 1 on",
     worst=0.075,
     source="ours: :func:`viscous_friction` and :func:`load_sharing.contact_load_share`",
 )

@@ -23,7 +23,7 @@ from stribeck.atlas.table import FRICTION_RADIUS, FUNCTIONS, Table, load_table
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.groups import Geometry, Groups
 from stribeck.contacts.model import BASE_MODEL, Model
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.quantities.units import InputError, checked_kind
 
 Box = dict[str, tuple[float, float]]

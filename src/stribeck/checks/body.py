@@ -19,7 +19,7 @@ from stribeck.contacts.notes import (
     pressure_notes,
     width_notes,
 )
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.profiles.dry import dry_contact
 from stribeck.quantities.formats import format_percent, format_si
 

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw, WithArea, as_asperity_law, is_exponential
 from stribeck.contact_laws.persson import PerssonLaw
+from stribeck.quantities.docstrings import Described
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["TAIL_COEFFICIENT", "FiniteSurface", "has_endless_tail"]
@@ -28,17 +29,10 @@ def has_endless_tail(law: AsperityLaw | None) -> bool:
 
 
 @dataclass(frozen=True)
-class FiniteSurface:
+class FiniteSurface(Described, title="Parameters"):
     r"""The exponential law or Persson's, ending as that of a finite surface does.
 
     .. math:: \ln\Phi(s) = \ln\Phi_0(s) - 0.065 \, (s/\alpha)^3 \quad (s > 0)
-
-    Parameters
-    ----------
-    alpha : float
-        Coefficient alpha of the law [-], which turns separations into gaps over h_rms.
-    base : AsperityLaw, optional
-        The law whose tail is cut: Persson's, or the exponential one by default.
 
     Raises
     ------
@@ -54,8 +48,8 @@ class FiniteSurface:
     Source: docs/contact_laws.md.
     """
 
-    alpha: float
-    base: AsperityLaw | None = None
+    alpha: Annotated[float, "coefficient alpha of the law, which turns separations into gaps over h_rms", "1"]
+    base: Annotated[AsperityLaw | None, "the law whose tail is cut: Persson's, or the exponential one by default"] = None
 
     def __post_init__(self) -> None:
         """Refuse what cannot be."""

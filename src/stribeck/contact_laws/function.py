@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import check_falls
 from stribeck.numerics.trace import pointwise
+from stribeck.quantities.docstrings import Described
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["FunctionLaw"]
@@ -32,24 +33,10 @@ class _WithSlope:
 
 
 @dataclass(frozen=True)
-class FunctionLaw:
+class FunctionLaw(Described, title="Parameters"):
     r"""Contact law given by a function, ln(Phi).
 
     .. math:: p_c = \beta E^* \exp[f(s)], \qquad s = \alpha h/h_\mathrm{rms}
-
-    Parameters
-    ----------
-    log_pressure : callable
-        f: takes an array of separations, returns ln(Phi) at each, falling.  Written with functions of numpy it brings its
-        derivative.
-    log_slope : callable, optional
-        df/ds, likewise, for a function that is not, as an interpolation.
-    name : str
-        What outputs call the law; not the name of one of the package's.
-    lowest : float
-        Separation down to which the functions have values: zero, or minus infinity for functions that go on below.
-    checked : tuple of float
-        Separations between which they are checked, on 400 points that are dense at the lower end.
 
     Raises
     ------
@@ -58,11 +45,22 @@ class FunctionLaw:
         differences are not its derivative within 1e-5, or if the name is taken.
     """
 
-    log_pressure: Callable[[Any], Any]
-    log_slope: Callable[[Array], Array] | None = None
-    name: str = "function"
-    lowest: float = 0.0
-    checked: tuple[float, float] = field(default=(1e-3, 100.0), repr=False)
+    log_pressure: Annotated[
+        Callable[[Any], Any],
+        "the function f: it takes an array of separations and returns ln(Phi) at each, falling; written with functions of "
+        "numpy it brings its derivative",
+    ]
+    log_slope: Annotated[
+        Callable[[Array], Array] | None, "its derivative df/ds, likewise, for a function that is not, as an interpolation"
+    ] = None
+    name: Annotated[str, "what outputs call the law; not the name of one of the package's"] = "function"
+    lowest: Annotated[
+        float, "separation down to which the functions have values: zero, or minus infinity for functions that go on below"
+    ] = 0.0
+    checked: Annotated[
+        tuple[float, float],
+        "separations between which they are checked, on 400 points that are dense at the lower end",
+    ] = field(default=(1e-3, 100.0), repr=False)
 
     def __post_init__(self) -> None:
         """Check the functions."""

@@ -91,6 +91,36 @@ class _GaussianHeights(AsperityLaw):
         """Return ln(Phi) at the separation ``s = alpha h/h_rms``."""
         return log_moment(self.order, separation)
 
+    @classmethod
+    def coefficients(cls, *, density: str | float, radius: str | float, deviation: str | float) -> dict[str, float]:
+        r"""Return :math:`\alpha = 1`, :math:`\beta` and :math:`h_\mathrm{rms} = \sigma`, which a line contact needs.
+
+        Parameters
+        ----------
+        density : str or float
+            Summits per area :math:`\eta_s > 0`, of two rough surfaces that of each [1/m**2].
+        radius : str or float
+            Radius of the summits :math:`R_s > 0` [m].
+        deviation : str or float
+            Standard deviation of their heights :math:`\sigma > 0`, of two rough surfaces the composite one [m].
+
+        Returns
+        -------
+        dict of str to float
+            ``alpha``, ``beta`` and ``roughness``, ready for :class:`stribeck.LineContact`.
+
+        Raises
+        ------
+        InputError
+            If a value is not positive or its unit is wrong.
+        """
+        eta, R, sigma = (row.checked(value) for row, value in zip(SUMMITS.values(), (density, radius, deviation), strict=True))
+        return {"alpha": 1.0, "beta": cls._beta(eta, R, sigma), "roughness": sigma}
+
+    @staticmethod
+    def _beta(eta: float, R: float, sigma: float) -> float:
+        raise NotImplementedError
+
     def notes(self, separation: float) -> tuple[str, ...]:
         """Return notes on a state with this minimum separation."""
         if separation >= 0:
@@ -122,32 +152,8 @@ class GreenwoodWilliamson(_GaussianHeights):
     beta_formula: ClassVar[str] = "4/3 density radius deviation (deviation/radius)^(1/2)"
 
     @staticmethod
-    def coefficients(*, density: str | float, radius: str | float, deviation: str | float) -> dict[str, float]:
-        r"""Return what a line contact needs of the surface.
-
-        .. math:: \beta = \frac43 \, \eta_s R_s \sigma \sqrt{\sigma/R_s}, \qquad \alpha = 1, \qquad h_\mathrm{rms} = \sigma
-
-        Parameters
-        ----------
-        density : str or float
-            Summits per area :math:`\eta_s > 0` [1/m**2].
-        radius : str or float
-            Radius of the summits :math:`R_s > 0` [m].
-        deviation : str or float
-            Standard deviation of their heights :math:`\sigma > 0` [m].
-
-        Returns
-        -------
-        dict of str to float
-            ``alpha``, ``beta`` and ``roughness``, ready for :class:`stribeck.LineContact`.
-
-        Raises
-        ------
-        InputError
-            If a value is not positive or its unit is wrong.
-        """
-        eta, R, sigma = (row.checked(value) for row, value in zip(SUMMITS.values(), (density, radius, deviation), strict=True))
-        return {"alpha": 1.0, "beta": 4 / 3 * eta * R * sigma * math.sqrt(sigma / R), "roughness": sigma}
+    def _beta(eta: float, R: float, sigma: float) -> float:
+        return 4 / 3 * eta * R * sigma * math.sqrt(sigma / R)
 
 
 @dataclass(frozen=True)
@@ -173,34 +179,8 @@ class GreenwoodTripp(_GaussianHeights):
     beta_formula: ClassVar[str] = "4.739 (density radius deviation)^2 (deviation/radius)^(1/2)"
 
     @staticmethod
-    def coefficients(*, density: str | float, radius: str | float, deviation: str | float) -> dict[str, float]:
-        r"""Return what a line contact needs of the two surfaces.
-
-        .. math:: \beta = \frac{16 \sqrt2 \pi}{15} (\eta_s R_s \sigma)^2 \sqrt{\sigma/R_s}, \qquad \alpha = 1, \qquad
-            h_\mathrm{rms} = \sigma
-
-        Parameters
-        ----------
-        density : str or float
-            Summits per area :math:`\eta_s > 0` of each surface [1/m**2].
-        radius : str or float
-            Radius of the summits :math:`R_s > 0` [m].
-        deviation : str or float
-            Composite standard deviation of their heights :math:`\sigma > 0` [m].
-
-        Returns
-        -------
-        dict of str to float
-            ``alpha``, ``beta`` and ``roughness``, ready for :class:`stribeck.LineContact`.
-
-        Raises
-        ------
-        InputError
-            If a value is not positive or its unit is wrong.
-        """
-        eta, R, sigma = (row.checked(value) for row, value in zip(SUMMITS.values(), (density, radius, deviation), strict=True))
-        beta = 16 * math.sqrt(2) * math.pi / 15 * (eta * R * sigma) ** 2 * math.sqrt(sigma / R)
-        return {"alpha": 1.0, "beta": beta, "roughness": sigma}
+    def _beta(eta: float, R: float, sigma: float) -> float:
+        return 16 * math.sqrt(2) * math.pi / 15 * (eta * R * sigma) ** 2 * math.sqrt(sigma / R)
 
 
 # The numbers of a surface of summits, from which a law makes the coefficients of a contact.

@@ -35,7 +35,7 @@ from stribeck.contacts.parts import (
     with_part_value,
 )
 from stribeck.files.results import Record
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.fluids.laws import HERTZ_UNITS, FilmUnits
 from stribeck.profiles.dry import DryContact, dry_contact
 from stribeck.quantities.docstrings import complete_docstring

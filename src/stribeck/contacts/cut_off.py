@@ -50,7 +50,7 @@ import numpy as np
 
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.model import Model
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 
 CUT_OFF_SLIDING = 0.954293  # K, the offset of ln X by sliding [-]
 CUT_OFF_ROTATION = -0.257268  # K', the offset of ln X by rotation [-]

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.fluid import Film
+from stribeck.fluids.fluid import Cavitation, Film
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.profiles.profile import Parabola, Undeformed
 from stribeck.quantities.units import InputError, checked_word, show

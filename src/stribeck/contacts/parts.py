@@ -13,11 +13,10 @@ from typing import Any, NamedTuple
 
 from stribeck.asperity_friction.law import AsperityFriction
 from stribeck.contacts.model import BASE_MODEL, Model
-from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.description import Fluid, as_flow_factors, as_fluid
+from stribeck.fluids.fluid import Cavitation
 from stribeck.fluids.laws import DensityLaw, FilmUnits, FlowFactors, RateLaw, ViscosityLaw
-from stribeck.profiles.check_profile import as_profile
-from stribeck.profiles.profile import Parabola, Profile, Undeformed, undeformed
+from stribeck.profiles.profile import Parabola, Profile, Undeformed, as_profile, undeformed
 from stribeck.profiles.shapes import Shape
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.registry import laws_of

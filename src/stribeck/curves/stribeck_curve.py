@@ -25,7 +25,7 @@ from stribeck.curves.regime import Landmark, Method, check_method
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.source import Coefficients, Progress
 from stribeck.curves.speed_range import SPEEDS, automatic_speed_range, fastest, grown, no_range, part_of_contact
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.continuation import follow
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos

@@ -37,8 +37,7 @@ from stribeck.contact_laws.scaled import by_group
 from stribeck.equations.damping import longest_step
 from stribeck.equations.film import NODAL, gradient_in_film
 from stribeck.equations.operators import LOAD, Operators
-from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.fluid import Film
+from stribeck.fluids.fluid import Cavitation, Film
 from stribeck.numerics.newton import LU, Inverse
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.running_integral import Volterra

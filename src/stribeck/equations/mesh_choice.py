@@ -13,8 +13,7 @@ from stribeck.contacts.groups import Groups
 from stribeck.equations.film import closed_gap, decay_of, is_rough, is_thinning, jump_of
 from stribeck.equations.guess import Guess
 from stribeck.equations.state import State
-from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.fluid import Film
+from stribeck.fluids.fluid import Cavitation, Film
 from stribeck.numerics.newton import root_between
 from stribeck.numerics.panels import Mesh, adapt, base_edges, graded, highest_degree, reference
 from stribeck.numerics.settings import (

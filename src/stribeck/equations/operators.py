@@ -20,7 +20,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.model import BASE_MODEL, Model
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.numerics.panels import HalfTail, Mesh, reference
 from stribeck.numerics.running_integral import RunningIntegral

@@ -3,11 +3,10 @@
 from stribeck.quantities.lazy import lazy_names as _lazy_names
 
 _HOMES = {
-    "description": ("Fluid",),
+    "description": ("Fluid", "Liquid"),
     "effective_medium": ("EffectiveMedium",),
     "flow_factors": ("PatirCheng",),
     "measured_viscosity": ("FlowCurve", "flow_curve", "read_flow_curve"),
-    "liquids": ("Liquid",),
     "oils": ("iso_vg", "oil"),
     "presets": ("PRESETS", "glycerol_water", "water"),
     "rheology.eyring": ("Eyring",),

@@ -1,9 +1,8 @@
 """The public names with their types; at run time each is imported on first use."""
 
-from stribeck.fluids.description import Fluid
+from stribeck.fluids.description import Fluid, Liquid
 from stribeck.fluids.effective_medium import EffectiveMedium
 from stribeck.fluids.flow_factors import PatirCheng
-from stribeck.fluids.liquids import Liquid
 from stribeck.fluids.measured_viscosity import FlowCurve, flow_curve, read_flow_curve
 from stribeck.fluids.oils import iso_vg, oil
 from stribeck.fluids.presets import PRESETS, glycerol_water, water

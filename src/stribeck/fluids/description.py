@@ -1,36 +1,39 @@
-"""Fluids as users describe them: laws in SI units, or in Hertz units with groups, that become a film."""
+"""Fluids as users describe them: laws in SI units, or in Hertz units with groups, that become a film; and liquids of them."""
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
-from stribeck.fluids.check_law import check_law
 from stribeck.fluids.fluid import Film
-from stribeck.fluids.laws import DensityLaw, FilmUnits, FlowFactors, RateLaw, Smooth, ViscosityLaw
+from stribeck.fluids.laws import DensityLaw, FilmUnits, FlowFactors, RateLaw, Smooth, ViscosityLaw, check_law
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.rheology.viscosity import Constant, Incompressible, check_range
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.docstrings import Described
+from stribeck.quantities.formats import format_si
+from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["Fluid", "as_fluid", "as_flow_factors"]
+__all__ = ["Fluid", "as_flow_factors", "as_fluid"]
 
 MAX_RELAXATION_TIME = 1e100  # Largest relaxation time and largest rate [Hertz units]: squares of rates stay finite.
 
+_TEMPERATURE = re.compile(r"\s*([+-]?[0-9]+(?:\.[0-9]*)?)\s*(degC|°C|deg C|C|K)\s*")
+
+
+# Kinds of laws by their argument of a fluid, and examples.
+KINDS: dict[str, tuple[type[Any], str]] = {
+    "rheology": (RateLaw, "Carreau, Cross, Eyring or PowerLaw"),
+    "viscosity": (ViscosityLaw, "Barus or Roelands"),
+    "density": (DensityLaw, "DowsonHigginson"),
+}
+
 
 @dataclass(frozen=True)
-class Fluid:
+class Fluid(Described, title="Parameters"):
     """A fluid with several laws at once; what is left out is constant.
 
     A contact takes one law alone too: ``fluid=Carreau("1 ms", 0.5)`` is ``fluid=Fluid(rheology=Carreau("1 ms", 0.5))``.
-
-    Parameters
-    ----------
-    rheology : Carreau, Cross, Eyring or PowerLaw, optional
-        How the viscosity falls with the shear rate; Newtonian without it.
-    viscosity : Barus or Roelands, optional
-        How the viscosity grows with the pressure.
-    density : DowsonHigginson, optional
-        How the density grows with the pressure.
 
     Raises
     ------
@@ -44,18 +47,15 @@ class Fluid:
     'carreau + roelands'
     """
 
-    rheology: RateLaw | None = None
-    viscosity: ViscosityLaw | None = None
-    density: DensityLaw | None = None
+    rheology: Annotated[
+        RateLaw | None, "how the viscosity falls with the shear rate: Carreau, Cross, Eyring or PowerLaw; Newtonian without it"
+    ] = None
+    viscosity: Annotated[ViscosityLaw | None, "how the viscosity grows with the pressure: Barus or Roelands"] = None
+    density: Annotated[DensityLaw | None, "how the density grows with the pressure: DowsonHigginson"] = None
 
     def __post_init__(self) -> None:
         """Refuse what is no law of its kind."""
-        kinds: dict[str, tuple[type, str]] = {
-            "rheology": (RateLaw, "Carreau, Cross, Eyring or PowerLaw"),
-            "viscosity": (ViscosityLaw, "Barus or Roelands"),
-            "density": (DensityLaw, "DowsonHigginson"),
-        }
-        for name, (kind, examples) in kinds.items():
+        for name, (kind, examples) in KINDS.items():
             law = getattr(self, name)
             if law is not None and not (isinstance(law, kind) and not isinstance(law, type)):
                 raise InputError(f"{name} = {show(law)} is no law of this kind; give one of sb.fluids: {examples}.")
@@ -137,13 +137,9 @@ def as_fluid(fluid: Any) -> Fluid:
         return fluid
     if fluid is None or fluid == "newtonian":
         return Fluid()
-    if not isinstance(fluid, type):
-        if isinstance(fluid, RateLaw):
-            return Fluid(rheology=fluid)
-        if isinstance(fluid, ViscosityLaw):
-            return Fluid(viscosity=fluid)
-        if isinstance(fluid, DensityLaw):
-            return Fluid(density=fluid)
+    for name, (kind, _) in KINDS.items():
+        if isinstance(fluid, kind) and not isinstance(fluid, type):
+            return Fluid(**{name: fluid})
     raise InputError(
         f"fluid = {show(fluid)}; give a law of sb.fluids such as Carreau('1 ms', 0.5) or Barus('15 1/GPa'), or "
         "Fluid(rheology, viscosity, density) for several; liquids by name are in sb.fluids.PRESETS."
@@ -166,3 +162,58 @@ def as_flow_factors(factors: Any) -> FlowFactors | None:
         f"flow_factors = {show(factors)}; give 'effective-medium', 'patir-cheng', a law of sb.fluids such as "
         "PatirCheng(alpha=2.0, gamma=1), or 'none'."
     )
+
+
+# What functions say that make liquids.
+TEMPERATURE = 'str or float\n    As ``"25 degC"``, ``"298 K"`` or a number of degrees Celsius'
+LIQUID = "Liquid\n    The liquid."
+IMPOSSIBLE = "InputError\n    Where a number is impossible."
+
+
+@dataclass(frozen=True)
+class Liquid(Described):
+    """A liquid under given conditions.
+
+    Examples
+    --------
+    >>> import stribeck as sb
+    >>> liquid = sb.fluids.glycerol_water(0.5, temperature="20 degC")
+    >>> round(1e3 * liquid.viscosity, 1)  # mPa s
+    6.0
+    """
+
+    name: Annotated[str, "what it is, with its conditions"]
+    viscosity: Annotated[float, "viscosity at ambient pressure and low rate", "Pa s"]
+    fluid: Annotated[Fluid, "how it depends on pressure and shear rate"]
+    source: Annotated[str, "where the numbers are from"]
+    thinning_rate: Annotated[
+        float | None,
+        "shear rate at which it begins to thin, where known of one without a law of thinning",
+        "1/s",
+    ] = None
+
+    @property
+    def inputs(self) -> dict[str, Any]:
+        """The arguments ``viscosity`` and ``fluid`` of a contact."""
+        return {"viscosity": self.viscosity, "fluid": self.fluid}
+
+    def __str__(self) -> str:
+        """Return name, viscosity, laws and source in one line."""
+        return f"{self.name}: {format_si(self.viscosity, 'viscosity')}, {self.fluid.name} ({self.source})"
+
+
+def celsius(temperature: str | float) -> float:
+    """Return a temperature in degrees Celsius, given so as a number or as text in degC or K."""
+    if isinstance(temperature, str):
+        found = _TEMPERATURE.fullmatch(temperature.replace("\N{MINUS SIGN}", "-"))
+        if found is None:
+            raise InputError(f"temperature = {show(temperature)}; write it as '25 degC' or '298 K'.")
+        return float(found[1]) - (273.15 if found[2] == "K" else 0.0)
+    return to_si(temperature, "number", "temperature", "25")
+
+
+def check_temperature(T: float, low: float, high: float) -> float:
+    """Return a temperature, refused where a formula does not hold [degC]."""
+    if not low <= T <= high:
+        raise InputError(f"temperature = {T:g} degC must lie between {low:g} and {high:g} degC, where the formula holds.")
+    return T

@@ -15,24 +15,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 import scipy
 from numpy.polynomial import chebyshev, legendre
 
 from stribeck._types import Array
-from stribeck.fluids.flow_factors import (
-    MIN_FLOW_FACTOR,
-    add_floor,
-    check_alpha,
-    nominal_separation,
-    scaled_roughness,
-    with_sigma,
-)
-from stribeck.fluids.laws import FilmUnits, FlowFactors
+from stribeck.fluids.flow_factors import MIN_FLOW_FACTOR, OfGaussianSurfaces, add_floor, nominal_separation
 from stribeck.numerics.cells import Cells
-from stribeck.quantities.units import InputError
 
 __all__ = ["PERCOLATION", "EffectiveMedium"]
 
@@ -53,8 +44,8 @@ FACTOR_CELLS = 8192  # Cells of the table of the flow factor in the logarithm of
 FACTOR_TERMS = 4  # Coefficients of the polynomial on each cell of that table.
 
 
-@dataclass(frozen=True, init=False)
-class EffectiveMedium(FlowFactors):
+@dataclass(frozen=True)
+class EffectiveMedium(OfGaussianSurfaces):
     r"""Flow factor of isotropic Gaussian surfaces by the theory of an effective medium.
 
     Parameters
@@ -78,13 +69,6 @@ class EffectiveMedium(FlowFactors):
     name: ClassVar[str] = "effective-medium"
     label: ClassVar[str] = "effective medium"
 
-    alpha: float | None
-    sigma: float | None
-
-    def __init__(self, alpha: float | None = None) -> None:
-        object.__setattr__(self, "alpha", check_alpha(alpha))
-        object.__setattr__(self, "sigma", None)
-
     @property
     def parameters(self) -> dict[str, float | str]:
         """The roughness in Hertz units."""
@@ -95,15 +79,9 @@ class EffectiveMedium(FlowFactors):
         """The threshold."""
         return None if self.sigma is None else PERCOLATION * self.sigma
 
-    def scaled(self, units: FilmUnits) -> Self:
-        """Return the factors in Hertz units."""
-        return with_sigma(self, scaled_roughness(self.alpha, units))
-
     def pressure(self, gap: Any) -> Any:
         """Return phi_x."""
-        if self.sigma is None:
-            raise InputError("flow factors in SI units are no film yet; give them to a contact or to groups.")
-        beyond = np.clip(gap / self.sigma - PERCOLATION, MIN_GAP_ABOVE_PERCOLATION, MAX_GAP_ABOVE_PERCOLATION)
+        beyond = np.clip(gap / self.roughness - PERCOLATION, MIN_GAP_ABOVE_PERCOLATION, MAX_GAP_ABOVE_PERCOLATION)
         return _factor_table()(np.log(beyond))
 
     def shear(self, gap: Any) -> Any:

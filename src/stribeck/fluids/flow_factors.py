@@ -15,9 +15,9 @@ Source: [Patir & Cheng 1978] and [Patir & Cheng 1979] for the fits.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import Any, ClassVar, Literal, Self, TypeVar
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 import scipy
@@ -28,7 +28,7 @@ from stribeck.numerics.dual import with_slope
 from stribeck.numerics.trace import pointwise
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["MIN_FLOW_FACTOR", "PatirCheng", "add_floor", "nominal_separation", "scaled_roughness"]
+__all__ = ["MIN_FLOW_FACTOR", "OfGaussianSurfaces", "PatirCheng", "add_floor", "nominal_separation"]
 
 MIN_FLOW_FACTOR = 1e-4  # Least pressure flow factor: without any flow the pressure gradient would have no bound.
 
@@ -36,8 +36,6 @@ MIN_FLOW_FACTOR = 1e-4  # Least pressure flow factor: without any flow the press
 BLEND_FRACTION = 0.5
 # Continuous derivatives of that blend; with one, the series of a curve converge on a twentieth of their length there.
 BLEND_DERIVATIVES = 4
-
-Factors = TypeVar("Factors", bound=FlowFactors)
 
 SEPARATION_RANGE = -37.0, 9.0  # H below which mean widths underflow, and above which the mean width is H in double precision.
 
@@ -57,8 +55,42 @@ FIT_COEFFICIENTS = {
 }
 
 
-@dataclass(frozen=True, init=False)
-class PatirCheng(FlowFactors):
+@dataclass(frozen=True)
+class OfGaussianSurfaces(FlowFactors):
+    """Flow factors of Gaussian surfaces, whose roughness follows from alpha of the contact law."""
+
+    alpha: float | None = None
+    sigma: float | None = field(default=None, init=False, repr=False)  # Roughness in Hertz units; None in SI units
+
+    def __post_init__(self) -> None:
+        """Check alpha."""
+        if self.alpha is not None:
+            value = to_si(self.alpha, "number", "alpha", "2.0")
+            if value <= 0:
+                raise InputError(f"alpha = {show(self.alpha)} must be above zero; it is that of the contact law, about 2.")
+            object.__setattr__(self, "alpha", value)
+
+    def scaled(self, units: FilmUnits) -> Self:
+        """Return the factors in Hertz units."""
+        alpha = units.alpha if self.alpha is None else self.alpha
+        if alpha is None:
+            raise InputError(
+                "flow factors of groups need alpha, the coefficient of the contact law: about 2, as PatirCheng(2.0)."
+            )
+        found = replace(self)
+        object.__setattr__(found, "sigma", alpha * units.decay_length / units.gap)
+        return found
+
+    @property
+    def roughness(self) -> float:
+        """The roughness in Hertz units."""
+        if self.sigma is None:
+            raise InputError("flow factors in SI units are no film yet; give them to a contact or to groups.")
+        return self.sigma
+
+
+@dataclass(frozen=True)
+class PatirCheng(OfGaussianSurfaces):
     r"""Flow factors of Gaussian surfaces from simulated flows.
 
     .. math::
@@ -109,37 +141,34 @@ class PatirCheng(FlowFactors):
     name: ClassVar[str] = "patir-cheng"
     label: ClassVar[str] = "Patir and Cheng"
 
-    alpha: float | None
-    gamma: float
-    substrate_share: float
-    friction_factors: bool
-    argument: Literal["nominal", "mean"]
-    sigma: float | None
+    gamma: float = 1.0
+    substrate_share: float = 0.5
+    friction_factors: bool = False
+    argument: Literal["nominal", "mean"] = "nominal"
 
-    def __init__(
-        self,
-        alpha: float | None = None,
-        gamma: float = 1.0,
-        substrate_share: float = 0.5,
-        friction_factors: bool = False,
-        argument: Literal["nominal", "mean"] = "nominal",
-    ) -> None:
-        number = to_si(gamma, "number", "gamma", "1")
-        known = min(FIT_COEFFICIENTS, key=lambda each: abs(math.log(max(number, 1e-9) / each)))
-        if not abs(number / known - 1) < 0.01:
-            raise InputError(f"gamma = {show(gamma)}; Patir and Cheng give factors for 1/9, 1/6, 1/3, 1, 3, 6 and 9 only.")
-        share = to_si(substrate_share, "number", "substrate_share")
+    def __post_init__(self) -> None:
+        """Check the numbers, and take the Peklenik number of the table that is meant."""
+        super().__post_init__()
+        gamma, share = to_si(self.gamma, "number", "gamma", "1"), to_si(self.substrate_share, "number", "substrate_share")
+        known = min(FIT_COEFFICIENTS, key=lambda each: abs(math.log(max(gamma, 1e-9) / each)))
+        if not abs(gamma / known - 1) < 0.01:
+            raise InputError(
+                f"gamma = {show(self.gamma)}; Patir and Cheng give factors for 1/9, 1/6, 1/3, 1, 3, 6 and 9 only."
+            )
         if not 0 <= share <= 1:
-            raise InputError(f"substrate_share = {show(substrate_share)} must lie between 0 and 1: its share in the variance.")
-        if not isinstance(friction_factors, bool):
-            raise InputError(f"friction_factors = {show(friction_factors)} must be true or false.")
-        if friction_factors and known != 1:
-            raise InputError(f"friction_factors are those of isotropic roughness: give gamma = 1, not {show(gamma)}.")
-        if argument not in ("nominal", "mean"):
-            raise InputError(f"argument = {show(argument)} must be 'nominal' or 'mean': the gap that the fits are taken at.")
-        values = {"alpha": check_alpha(alpha), "gamma": known, "substrate_share": share, "friction_factors": friction_factors}
-        for name, value in {**values, "argument": argument, "sigma": None}.items():
-            object.__setattr__(self, name, value)
+            raise InputError(
+                f"substrate_share = {show(self.substrate_share)} must lie between 0 and 1: its share in the variance."
+            )
+        if not isinstance(self.friction_factors, bool):
+            raise InputError(f"friction_factors = {show(self.friction_factors)} must be true or false.")
+        if self.friction_factors and known != 1:
+            raise InputError(f"friction_factors are those of isotropic roughness: give gamma = 1, not {show(self.gamma)}.")
+        if self.argument not in ("nominal", "mean"):
+            raise InputError(
+                f"argument = {show(self.argument)} must be 'nominal' or 'mean': the gap that the fits are taken at."
+            )
+        object.__setattr__(self, "gamma", known)
+        object.__setattr__(self, "substrate_share", share)
 
     @property
     def parameters(self) -> dict[str, float | str]:
@@ -147,10 +176,6 @@ class PatirCheng(FlowFactors):
         found: dict[str, float | str] = {"gamma": self.gamma, "substrate_share": self.substrate_share}
         found |= {"friction_factors": str(self.friction_factors).lower(), "argument": self.argument}
         return found if self.sigma is None else {**found, "sigma": self.sigma}
-
-    def scaled(self, units: FilmUnits) -> Self:
-        """Return the factors in Hertz units."""
-        return with_sigma(self, scaled_roughness(self.alpha, units))
 
     def pressure(self, gap: Any) -> Any:
         """Return the flow over that between smooth surfaces at the mean gap."""
@@ -174,12 +199,11 @@ class PatirCheng(FlowFactors):
         v = 2 * self.substrate_share - 1
         if v == 0:
             return np.zeros_like(gap)
-        assert self.sigma is not None
         H = self._separation(gap)
         least = FIT_COEFFICIENTS[self.gamma][0]
-        share = self._near(least) / (self.sigma * self._width(least))
+        share = self._near(least) / (self.roughness * self._width(least))
         near = self._near(np.clip(H, least, SHEAR_FIT_END))
-        return v * self.sigma * np.where(H > SHEAR_FIT_END, self._far(H), np.where(H > least, near, share * gap))
+        return v * self.roughness * np.where(H > SHEAR_FIT_END, self._far(H), np.where(H > least, near, share * gap))
 
     def _near(self, H: Any) -> Any:
         """Return the fit of phi_s up to :data:`SHEAR_FIT_END`, for v = 1."""
@@ -212,9 +236,8 @@ class PatirCheng(FlowFactors):
         """Return phi_f (of eta s over the mean gap), phi_fs and phi_fp."""
         if not self.friction_factors:
             return None
-        assert self.sigma is not None
         H = self._separation(gap)
-        width = gap / self.sigma
+        width = gap / self.roughness
         v = 2 * self.substrate_share - 1
         inside = np.clip(H, 0.0, FRICTION_FIT_END)
         fs = v * 11.1 * inside**2.31 * np.exp(-2.38 * inside + 0.11 * inside**2) * (H < FRICTION_FIT_END)
@@ -238,11 +261,9 @@ class PatirCheng(FlowFactors):
 
     def _separation(self, gap: Any) -> Any:
         """Return H."""
-        if self.sigma is None:
-            raise InputError("flow factors in SI units are no film yet; give them to a contact or to groups.")
         if self.argument == "mean":
-            return gap / self.sigma
-        return pointwise(lambda width: (H := nominal_separation(width), 1 / scipy.special.ndtr(H)), gap / self.sigma)
+            return gap / self.roughness
+        return pointwise(lambda width: (H := nominal_separation(width), 1 / scipy.special.ndtr(H)), gap / self.roughness)
 
 
 def mean_width(H: Any) -> Any:
@@ -288,30 +309,3 @@ def mean_inverse_width(H: Array) -> tuple[Array, Array]:
 def add_floor(phi: Any) -> Any:
     """Return a flow factor that stays above zero: itself far above :data:`MIN_FLOW_FACTOR`."""
     return 0.5 * (phi + np.sqrt(phi * phi + 4 * MIN_FLOW_FACTOR**2))
-
-
-def check_alpha(alpha: float | None) -> float | None:
-    """Return a coefficient of the contact law, checked."""
-    if alpha is None:
-        return None
-    value = to_si(alpha, "number", "alpha", "2.0")
-    if value <= 0:
-        raise InputError(f"alpha = {show(alpha)} must be above zero; it is that of the contact law, about 2.")
-    return value
-
-
-def scaled_roughness(alpha: float | None, units: FilmUnits) -> float:
-    """Return sigma in Hertz units."""
-    alpha = units.alpha if alpha is None else alpha
-    if alpha is None:
-        raise InputError("flow factors of groups need alpha, the coefficient of the contact law: about 2, as PatirCheng(2.0).")
-    return alpha * units.decay_length / units.gap
-
-
-def with_sigma(factors: Factors, sigma: float) -> Factors:
-    """Return flow factors with their roughness in Hertz units."""
-    found = object.__new__(type(factors))
-    for name, value in vars(factors).items():
-        object.__setattr__(found, name, value)
-    object.__setattr__(found, "sigma", sigma)
-    return found

@@ -12,6 +12,7 @@ traces of them (:mod:`stribeck.numerics.trace`), so that their derivatives follo
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import Any, NamedTuple, Protocol, Self
 
 from stribeck._types import Array, Numbers
@@ -81,3 +82,16 @@ class Film(Protocol):
 
     def notes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[str, ...]:
         """Return sentences on where this state leaves the range of the fluid's laws; mostly none."""
+
+
+class Cavitation(StrEnum):
+    """How the film ends behind the contact."""
+
+    NONE = "none"
+    """The gap is full of liquid on both sides, whatever the suction."""
+
+    EXIT = "exit"
+    """The film ruptures at ambient pressure, at the exit, where pressure and pressure gradient are zero."""
+
+    REFORM = "reform"
+    """The film ruptures at the pressure of the cavity and re-forms where it must."""

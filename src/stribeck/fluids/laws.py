@@ -8,13 +8,29 @@ they take values, and values with their derivatives (:mod:`stribeck.numerics.dua
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol, Self, runtime_checkable
 
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.numerics.dual import with_slope
 from stribeck.quantities.schema import numbers_of
+from stribeck.quantities.user_part import check_user_part, refusal
+
+AGREEMENT_RTOL = 1e-5  # Largest relative difference of a law from its own differences, which err a thousand times less.
+
+DIFFERENCE_STEP = 1e-4  # Relative step of the central differences.
+
+CHECKED_RATES = np.geomspace(1e-3, 1e4, 36)  # Shear rates times the relaxation time at which a law is checked.
+
+CHECKED_UNITS = (0.1, 10.0)  # Units of time, pressure and length to which a law is scaled in the check.
+
+# Pressures or gaps [SI or Hertz units] searched for the first one that changes a law.
+SEARCHED_SIZES = np.geomspace(1e-12, 1e12, 241)
+
+DECAY_LENGTHS = (1e-12, 1.0)  # Decay lengths of the roughness [m]: far below a length of the law's own, and the only length.
 
 
 class FilmUnits(NamedTuple):
@@ -185,3 +201,117 @@ def joined_parameters(*laws: Law) -> dict[str, float | str]:
 def notes_of(*laws: Law, gap: Array, pressure: Array | None) -> tuple[str, ...]:
     """Return the notes of the laws of a film."""
     return tuple(note for law in laws for note in law.notes(gap, pressure))
+
+
+def check_law(law: Any) -> None:
+    """Refuse a law of somebody else's whose members contradict each other."""
+    check_user_part("law", law, _check_members)
+
+
+def _check_members(law: Any) -> None:
+    for kind, check in CHECKS.items():
+        if isinstance(law, kind):
+            check(law)
+
+
+def _rate_law(law: RateLaw) -> None:
+    g, slope = _with_slope(law, "stress", CHECKED_RATES)
+    if not (np.diff(g) > 0).all():
+        raise refusal("law", law, "the stress must rise with the rate; here it does not.")
+    _agree(law, "stress", "its slope", slope, _difference(law.stress, CHECKED_RATES))
+    if law.plateau >= CHECKED_RATES[0]:
+        low = np.array([1e-3 * law.plateau])
+        _agree(law, "stress", "at low rates the rate, as the viscosity there is that of the contact", law.stress(low), low)
+    _agree(law, "rate", "the inverse of stress", law.rate(g), CHECKED_RATES)
+    for order, what in ((0, "the integral of x dg"), (1, "the integral of g x dg")):
+        change = _difference(lambda x, k=order: law.moments(x, law.stress(x))[k], CHECKED_RATES)  # type: ignore[misc]
+        _agree(law, "moments", what, change, CHECKED_RATES * slope * g**order)
+    for unit in CHECKED_UNITS:
+        scaled = law.scaled(FilmUnits(1.0, unit, 1.0, 1.0))
+        _agree(law, "scaled", "in units of time: time over the unit", np.array(scaled.time), np.array(law.time / unit))
+        _agree(law, "scaled", "the same stress of a rate times the time", scaled.stress(CHECKED_RATES), g)
+
+
+def _pressure_law(law: Any, member: str, rest: float) -> None:
+    def values(each: Any, pressure: Array) -> tuple[Array, Array]:
+        return _with_slope(each, member, pressure)
+
+    at_rest, [first] = values(law, np.zeros(1))
+    _agree(law, member, f"{rest:g} at ambient pressure", at_rest + 1.0, np.array([rest + 1.0]))
+    flat = first == 0 or not np.isfinite(first)
+    scale = _first_change(lambda p: values(law, p)[0] - rest, SEARCHED_SIZES) if flat else 1.0 / abs(float(first))
+    pressures = scale * np.linspace(0.05, 0.8, 6)
+    found, slope = values(law, pressures)
+    _agree(law, member, "its slope", slope * scale, _difference(lambda p: values(law, p)[0], pressures) * scale, 1.0)
+    for unit in CHECKED_UNITS:
+        other, steeper = values(law.scaled(FilmUnits(unit * scale, 1.0, 1.0, 1.0)), pressures / (unit * scale))
+        _agree(law, "scaled", "in units of pressure the same values", other, found, 1.0)
+        _agree(law, "scaled", "in units of pressure the same slopes", steeper / unit, slope * scale, 1.0)
+
+
+def _flow_factors(law: FlowFactors) -> None:
+    for decay_length in DECAY_LENGTHS:
+        first, *others = (law.scaled(FilmUnits(1.0, 1.0, unit, 1.0, decay_length, 1.0)) for unit in (1.0, *CHECKED_UNITS))
+        first_gap = _first_change(lambda h, of=first: of.pressure(h) - 1, SEARCHED_SIZES[::-1])  # type: ignore[misc]
+        gaps = np.geomspace(1.0, 30.0, 8) * first_gap
+        of_first = {member: _with_slope(first, member, gaps) for member in ("pressure", "shear")}
+        for unit, scaled in zip(CHECKED_UNITS, others, strict=True):
+            for member, (value, _) in of_first.items():
+                found, slope = _with_slope(scaled, member, gaps / unit)
+                change = _difference(getattr(scaled, member), gaps / unit)
+                size = 1.0 if member == "pressure" else unit
+                largest = float(np.abs(value).max())
+                _agree(law, member, "its slope", slope * size * gaps / unit, change * size * gaps / unit, largest)
+                _agree(law, "scaled", f"in units of length the same {member}", found * size, value, largest)
+
+
+# Check of each kind of law.
+CHECKS: dict[type, Callable[[Any], None]] = {
+    RateLaw: _rate_law,
+    ViscosityLaw: lambda law: _pressure_law(law, "log", 0.0),
+    DensityLaw: lambda law: _pressure_law(law, "ratio", 1.0),
+    FlowFactors: _flow_factors,
+}
+
+
+def _with_slope(law: Any, member: str, at: Array) -> tuple[Array, Array]:
+    """Return values and slopes of a member; raise InputError unless it gives a value at each place, with its derivative."""
+    function = getattr(law, member)
+    found = function(at)
+    if not isinstance(found, np.ndarray) or found.shape != at.shape:
+        raise refusal("law", law, f"{member} must return an array, its value at each of those that it is given.")
+    try:
+        return with_slope(function, at)
+    except TypeError as error:
+        raise refusal(
+            "law",
+            law,
+            f"{member} must be written with functions of numpy that have a derivative, such as exp, log, power, maximum and "
+            f"where, or give it by stribeck.numerics.trace.pointwise; it fails: {error}.",
+        ) from error
+
+
+def _first_change(change: Callable[[Array], Array], sizes: Array) -> float:
+    """Return the first size at which a law does something; 1 if it never does."""
+    done = np.abs(change(sizes)) > 0.1
+    return float(sizes[np.argmax(done)]) if done.any() else 1.0
+
+
+def _difference(function: Callable[[Array], Array], at: Array) -> Array:
+    """Return the derivative of a function by central differences of two steps, extrapolated."""
+    coarse, fine = (
+        (function(at * (1 + step)) - function(at * (1 - step))) / (2 * step * at)
+        for step in (DIFFERENCE_STEP, 0.5 * DIFFERENCE_STEP)
+    )
+    return np.asarray((4 * fine - coarse) / 3)
+
+
+def _agree(law: Law, member: str, what: str, found: Array, right: Array, floor: float = 0.0) -> None:
+    """Refuse a member whose values are not right."""
+    found, right = np.broadcast_arrays(np.asarray(found, dtype=float), np.asarray(right, dtype=float))
+    wrong = ~(np.abs(found - right) <= AGREEMENT_RTOL * np.maximum(np.abs(right), floor))
+    if wrong.any():
+        i = int(np.argmax(wrong))
+        raise refusal(
+            "law", law, f"{member} does not agree with {what}: {found.flat[i]:.6g} where it must be {right.flat[i]:.6g}."
+        )

@@ -11,9 +11,10 @@ taken.
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -240,26 +241,18 @@ def _checked(rate: Any, viscosity: Any) -> tuple[Array, Array]:
 
 def _fits(name: str, kind: type[Any] | None, x: Array, y: Array) -> list[_Fit]:
     """Return the fits of a law, of one with two plateaus also with the second at zero."""
-    log_y, middle = np.log(y), float(np.exp(np.log(x).mean()))
+    log_y = np.log(y)
     if kind is None:
         mean = float(log_y.mean())
         error = float(log_y.std()) / math.sqrt(x.size)
         return [_judged(name, None, mean, {}, np.array([error]), log_y - mean)]
-    slope = -float(np.polyfit(np.log(x), log_y, 1)[0])
     if kind is PowerLaw:
-        return _searched(name, kind, x, log_y, [np.array([log_y.mean(), 1 - slope])], lambda p: {"exponent": p[1]}, 1 / middle)
-    lowest, highest = numbers_of(kind)["exponent"].lowest, numbers_of(kind)["exponent"].highest
-    exponents = (0.3, 0.7)
-    times = np.geomspace(1 / x[-1], 1 / x[0], STARTS)
-    starts = [np.array([log_y.max(), math.log(t), n]) for t in times for n in exponents if lowest < n < highest]
-
-    def numbers(p: Array) -> dict[str, float]:
-        found = {"relaxation_time": math.exp(p[1]), "exponent": p[2]}
-        return found | ({"infinite_viscosity": math.exp(p[3])} if len(p) > 3 else {})
-
-    ratio = math.log(0.5 * y.min() / y.max())
-    with_plateau = [np.append(start, ratio) for start in starts]
-    return [*_searched(name, kind, x, log_y, starts, numbers), *_searched(name, kind, x, log_y, with_plateau, numbers)]
+        slope = float(np.polyfit(np.log(x), log_y, 1)[0])
+        time = {"relaxation_time": 1 / float(np.exp(np.log(x).mean()))}
+        return _searched(name, kind, x, log_y, log_y.mean(), {"exponent": [1 + slope]}, time)
+    starts = {"relaxation_time": [math.log(t) for t in np.geomspace(1 / x[-1], 1 / x[0], STARTS)], "exponent": [0.3, 0.7]}
+    plateau = {"infinite_viscosity": [math.log(0.5 * y.min() / y.max())]}
+    return [fit for each in (starts, starts | plateau) for fit in _searched(name, kind, x, log_y, log_y.max(), each, {})]
 
 
 def _searched(
@@ -267,39 +260,38 @@ def _searched(
     kind: type[Any],
     x: Array,
     log_y: Array,
-    starts: list[Array],
-    numbers: Callable[[Array], dict[str, float]],
-    time: float | None = None,
+    log_viscosity: float,
+    starts: dict[str, list[float]],
+    fixed: dict[str, float],
 ) -> list[_Fit]:
     """Return the best fit from several first values; none where there are no more values than parameters and two."""
     from scipy.optimize import least_squares  # slow to import
 
-    size = starts[0].size
+    size = 1 + len(starts)
     if x.size < size + 3:
         return []
-    fixed = {} if time is None else {"relaxation_time": time}
-    schema = numbers_of(kind)["exponent"]
-    low, high = np.full(size, -np.inf), np.full(size, np.inf)
-    at = 1 if time is not None else 2
-    low[at], high[at] = schema.lowest, schema.highest
-    if size > 3:
-        low[3], high[3] = math.log(1e-12), math.log(1 - 1e-9)
+    exponent = numbers_of(kind)["exponent"]
+    ranges = {"exponent": exponent.range, "infinite_viscosity": (math.log(1e-12), math.log(1 - 1e-9))}
+    low, high = np.array([(-np.inf, np.inf), *(ranges.get(each, (-np.inf, np.inf)) for each in starts)]).T
+
+    def numbers(p: Array) -> dict[str, float]:
+        free = zip(starts, p[1:].tolist(), strict=True)
+        return fixed | {each: value if each == "exponent" else math.exp(value) for each, value in free}
 
     def deviation(p: Array) -> Array:
-        law = kind(**fixed, **numbers(p))
+        law = kind(**numbers(p))
         rate = x * law.time
         return np.asarray(p[0] + np.log(law.stress(rate) / rate) - log_y)
 
-    inside = (np.clip(start, low + 1e-6, high - 1e-6) for start in starts)
-    found = min((least_squares(deviation, start, bounds=(low, high)) for start in inside), key=lambda each: each.cost)
+    first = (np.clip([log_viscosity, *each], low + 1e-6, high - 1e-6) for each in itertools.product(*starts.values()))
+    found = min((least_squares(deviation, each, bounds=(low, high)) for each in first), key=lambda each: each.cost)
     _, singular, rows = np.linalg.svd(np.asarray(found.jac), full_matrices=False)
     scatter = math.sqrt(2 * found.cost / (x.size - size))
     if singular[-1] > EPSILON * singular[0]:
         errors = scatter * np.sqrt(((rows.T / singular) ** 2).sum(axis=1))
     else:
         errors = np.full(size, np.inf)
-    given = fixed | numbers(found.x)
-    return [_judged(name, kind, float(found.x[0]), given, errors, found.fun)]
+    return [_judged(name, kind, float(found.x[0]), numbers(found.x), errors, found.fun)]
 
 
 def _judged(

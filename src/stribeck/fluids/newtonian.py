@@ -10,19 +10,25 @@ Source: [BP] Eq. (thin-film_dl); isoviscous fluid, no flow factors.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, NamedTuple, Self
+import math
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, NamedTuple, Self, cast
 
 import numpy as np
 
 from stribeck._types import Array, Numbers
-from stribeck.fluids.fluid import MAX_CACHED_SHAPES
+from stribeck.fluids.fluid import MAX_CACHED_SHAPES, Film
 from stribeck.fluids.laws import DensityLaw, FlowFactors, Smooth, ViscosityLaw, joined_names, joined_parameters, notes_of
 from stribeck.fluids.rheology.viscosity import Constant, Incompressible
 from stribeck.numerics.dual import with_slope
 from stribeck.numerics.trace import mapped, pointwise, value_of
+from stribeck.quantities.lazy import cached_property
 
 ONE = np.ones(())
+
+# Logarithmic decay of the Newtonian part of a blend with a fluid that thins: its films are powers of that part; without decay
+# the thinnest are lost (test_a_film_of_which_rounding_leaves_three_digits_is_returned_with_its_error).
+NEWTONIAN_DECAY = 8.0
 
 
 class _Factors(NamedTuple):
@@ -33,8 +39,44 @@ class _Factors(NamedTuple):
     shear: tuple[Array, Array]
 
 
+class Column:
+    """What films of all fluids share: laws of the pressure, walls that move, and what was found last on as many nodes."""
+
+    viscosity: ViscosityLaw
+    density: DensityLaw
+    slide: float
+    entrained: float
+
+    @cached_property
+    def uses_pressure(self) -> bool:
+        """Whether viscosity or density depend on the pressure."""
+        return not (isinstance(self.viscosity, Constant) and isinstance(self.density, Incompressible))
+
+    @cached_property
+    def _known(self) -> dict[int, Any]:
+        return {}
+
+    def _changed(self, **changes: Any) -> Self:
+        """Return the film with other numbers, which shares what is known."""
+        found: Self = replace(cast(Any, self), **changes)
+        vars(found)["_known"] = self._known
+        return found
+
+    def moving(self, share: float) -> Self:
+        """Return the film between walls at a share of their speeds."""
+        return self._changed(slide=share * self.slide, entrained=share * self.entrained)
+
+    def held(self, gap: Any, pressure: Any) -> Any:
+        """Return the gap times the density ratio."""
+        return gap * self._of_pressure(pressure)[1] if self.uses_pressure else gap
+
+    def _of_pressure(self, pressure: Any) -> tuple[Any, Any]:
+        """Return viscosity and density."""
+        return of_pressure(self.viscosity, self.density, pressure) if self.uses_pressure else (ONE, ONE)
+
+
 @dataclass(frozen=True)
-class Newtonian:
+class Newtonian(Column):
     r"""The fluid whose viscosity does not depend on the shear rate.
 
     .. math:: G = \frac{\eta(p) \, [h + s S(h) - m/\rho(p)]}{\phi_x(h) \, h^3}
@@ -48,19 +90,17 @@ class Newtonian:
     flow: FlowFactors = Smooth()  # Of rough surfaces
     slide: float = 1.0  # Half the slide-to-roll ratio, `s = (u1 - u2)/(u1 + u2)`
     entrained: float = 1.0  # Sum of the speeds over U, see :meth:`moving`
-    uses_pressure: bool = field(init=False, repr=False, compare=False)
-    is_smooth: bool = field(init=False, repr=False, compare=False)
-    is_plain: bool = field(init=False, repr=False, compare=False)
-    _known: dict[int, _Factors] = field(init=False, repr=False, compare=False)
     uses_speed: ClassVar[bool] = False
 
-    def __post_init__(self) -> None:
-        """Note whether viscosity or density depend on the pressure, and whether all is constant and smooth."""
-        uses_pressure = not (isinstance(self.viscosity, Constant) and isinstance(self.density, Incompressible))
-        object.__setattr__(self, "uses_pressure", uses_pressure)
-        object.__setattr__(self, "_known", {})
-        object.__setattr__(self, "is_smooth", isinstance(self.flow, Smooth))
-        object.__setattr__(self, "is_plain", not uses_pressure and self.is_smooth)
+    @cached_property
+    def is_smooth(self) -> bool:
+        """Whether no roughness acts on the flow."""
+        return isinstance(self.flow, Smooth)
+
+    @cached_property
+    def is_plain(self) -> bool:
+        """Whether all is constant and smooth."""
+        return not self.uses_pressure and self.is_smooth
 
     @property
     def name(self) -> str:
@@ -75,14 +115,6 @@ class Newtonian:
     def at(self, speed: Numbers) -> Self:
         """Return the film itself: no speed matters."""
         return self
-
-    def moving(self, share: float) -> Self:
-        """Return the film between walls at a share of their speeds."""
-        return replace(self, slide=share * self.slide, entrained=share * self.entrained)
-
-    def held(self, gap: Any, pressure: Any) -> Any:
-        """Return the gap times the density ratio."""
-        return gap * self._of_pressure(pressure)[1] if self.uses_pressure else gap
 
     def gradient(self, gap: Any, pressure: Any, flux_gap: Any) -> Any:
         """Return G."""
@@ -128,10 +160,6 @@ class Newtonian:
         """Return where the state leaves the range of the laws."""
         return notes_of(self.viscosity, self.density, self.flow, gap=gap, pressure=pressure)
 
-    def _of_pressure(self, pressure: Any) -> tuple[Any, Any]:
-        """Return viscosity and density."""
-        return of_pressure(self.viscosity, self.density, pressure) if self.uses_pressure else (ONE, ONE)
-
     def roughness(self, gap: Any) -> tuple[Any, Any]:
         """Return phi_x and S, those known if the last on as many nodes were for the same gaps."""
         h = np.ravel(value_of(gap))
@@ -158,3 +186,47 @@ def flux_gap(gap: Array, weights: Array) -> float:
     minimum = gap.min()
     scaled = minimum / gap
     return float(minimum * (weights @ scaled**2) / (weights @ scaled**3))
+
+
+@dataclass(frozen=True)
+class Blend:
+    """A film whose flow lies between that of a Newtonian fluid and its own; in all else it is its own."""
+
+    film: Film
+    newtonian: float  # Part of the Newtonian fluid
+    plain: Film = Newtonian()
+
+    @property
+    def name(self) -> str:
+        """The name of the film."""
+        return self.film.name
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """The parameters of the film."""
+        return self.film.parameters
+
+    @property
+    def uses_pressure(self) -> bool:
+        """Whether the film's gradient depends on the pressure."""
+        return self.film.uses_pressure
+
+    def at(self, speed: Any) -> Self:
+        """Return the blend at a speed."""
+        return replace(self, film=self.film.at(speed))
+
+    def gradient(self, gap: Any, pressure: Any, flux_gap: Any) -> Any:
+        """Return the weighted mean of both gradients."""
+        own = self.film.gradient(gap, pressure, flux_gap)
+        return self.newtonian * self.plain.gradient(gap, None, flux_gap) + (1 - self.newtonian) * own
+
+    def __getattr__(self, name: str) -> object:
+        """Return any other attribute of the film."""
+        return getattr(self.film, name)
+
+
+def blend(film: Film, part: float) -> Film:
+    """Return the film at a place of the path from the Newtonian one, 0, to its own, 1."""
+    if part == 1.0:
+        return film
+    return cast(Film, Blend(film, (1 - part) * (math.exp(-NEWTONIAN_DECAY * part) if hasattr(film, "decay") else 1.0)))

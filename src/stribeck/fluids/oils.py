@@ -19,9 +19,9 @@ from __future__ import annotations
 
 import math
 
-from stribeck.fluids.description import Fluid
-from stribeck.fluids.liquids import Liquid, celsius, check_temperature
+from stribeck.fluids.description import IMPOSSIBLE, LIQUID, TEMPERATURE, Fluid, Liquid, celsius, check_temperature
 from stribeck.numerics.newton import root_between
+from stribeck.quantities.docstrings import told
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["OIL_EYRING_STRESS", "iso_vg", "oil"]
@@ -49,10 +49,14 @@ REFERENCE_OILS = (
     (55.0, (0.85921, 11.1009, -83.19), (0.1713, 11.368, -76.94)),
     (70.0, (0.83531, 14.6731, -216.246), (0.16841, 11.8493, -96.947)),
 )
+# What functions say that make oils.
+OF_OIL = {"temperature": f"{TEMPERATURE}, -20 to 150.", "density_15": "str or float\n    Density at 15 degrees [kg/m^3]."}
+
 THINNEST, THICKEST = 2.0, 500.0  # Viscosities at 100 degC between which the index is defined, or oils are known [cSt]
 SOURCE = "ASTM D341 and D2270; density at 15 degC less 0.65 kg/m^3 per kelvin"
 
 
+@told(OF_OIL, raises=IMPOSSIBLE)
 def iso_vg(
     grade: str | float = 46.0,
     temperature: str | float = 40.0,
@@ -65,22 +69,13 @@ def iso_vg(
     ----------
     grade : str or float
         ISO VG grade, the viscosity at 40 degrees [cSt], as ``46``, ``"46 cSt"`` or ``"VG 46"``; 5 to 3200.
-    temperature : str or float
-        As ``"60 degC"``, ``"333 K"`` or a number of degrees Celsius, -20 to 150.
     viscosity_index : float
         Viscosity index [-], 0 to 250; 90 to 105 of mineral oils, 130 to 200 of synthetic and multigrade ones.
-    density_15 : str or float
-        Density at 15 degrees [kg/m^3].
 
     Returns
     -------
     Liquid
         The liquid.  A grade is known to 10 %; by the index the viscosity is exact to 1 % between 20 and 100 degrees.
-
-    Raises
-    ------
-    InputError
-        Where a number is impossible.
 
     Examples
     --------
@@ -99,6 +94,7 @@ def iso_vg(
     return _oil(f"ISO VG {at_40:g}, index {index:g},", at_40, _at_100(at_40, index), temperature, density_15)
 
 
+@told(OF_OIL, LIQUID)
 def oil(
     viscosity_40: str | float = "46 cSt",
     viscosity_100: str | float = "6.8 cSt",
@@ -109,17 +105,10 @@ def oil(
 
     Parameters
     ----------
-    viscosity_40, viscosity_100 : str or float
-        Kinematic viscosities at 40 and at 100 degrees [cSt], as ``"46 cSt"`` or a number of cSt.
-    temperature : str or float
-        As ``"60 degC"``, ``"333 K"`` or a number of degrees Celsius, -20 to 150.
-    density_15 : str or float
-        Density at 15 degrees [kg/m^3].
-
-    Returns
-    -------
-    Liquid
-        The liquid.
+    viscosity_40 : str or float
+        Kinematic viscosity at 40 degrees [cSt], as ``"46 cSt"`` or a number of cSt.
+    viscosity_100 : str or float
+        That at 100 degrees [cSt], likewise.
 
     Raises
     ------

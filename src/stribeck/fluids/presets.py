@@ -27,12 +27,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Annotated, Any
 
-from stribeck.fluids.description import Fluid
-from stribeck.fluids.liquids import Liquid, celsius, check_temperature
+from stribeck.fluids.description import IMPOSSIBLE, LIQUID, TEMPERATURE, Fluid, Liquid, celsius, check_temperature
 from stribeck.fluids.oils import OIL_EYRING_STRESS, SOURCE, iso_vg, oil
 from stribeck.fluids.rheology.rate_laws import Carreau, Cross
 from stribeck.fluids.rheology.viscosity import Roelands
-from stribeck.quantities.docstrings import Described
+from stribeck.quantities.docstrings import Described, told
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["PRESETS", "Preset", "glycerol_water", "water"]
@@ -64,49 +63,21 @@ class Preset(Described):
         return self.make(**{**self.conditions, **conditions})
 
 
+@told({"temperature": f"{TEMPERATURE}."}, LIQUID, IMPOSSIBLE)
 def water(temperature: str | float = 25.0) -> Liquid:
-    """Return water at a temperature between 0 and 100 degrees Celsius.
-
-    Parameters
-    ----------
-    temperature : str or float
-        As ``"25 degC"``, ``"298 K"`` or a number of degrees Celsius.
-
-    Returns
-    -------
-    Liquid
-        The liquid.
-
-    Raises
-    ------
-    InputError
-        Where the temperature is impossible.
-    """
+    """Return water at a temperature between 0 and 100 degrees Celsius."""
     T = check_temperature(celsius(temperature), 0, 100)
     viscosity = _water(T)
     return Liquid(f"water at {T:g} degC", viscosity, Fluid(), "Cheng 2008", WATER_EYRING_STRESS / viscosity)
 
 
+@told(
+    {"weight_fraction": "float\n    Glycerol in the weight, 0 to 1 [-].", "temperature": f"{TEMPERATURE}, 0 to 100."},
+    LIQUID,
+    IMPOSSIBLE,
+)
 def glycerol_water(weight_fraction: float = 0.5, temperature: str | float = 25.0) -> Liquid:
-    """Return a mixture of glycerol and water.
-
-    Parameters
-    ----------
-    weight_fraction : float
-        Glycerol in the weight, 0 to 1 [-].
-    temperature : str or float
-        Between 0 and 100 degrees Celsius, as ``"25 degC"``, ``"298 K"`` or a number of degrees Celsius.
-
-    Returns
-    -------
-    Liquid
-        The liquid.
-
-    Raises
-    ------
-    InputError
-        Where fraction or temperature are impossible.
-    """
+    """Return a mixture of glycerol and water."""
     C, T = to_si(weight_fraction, "number", "weight_fraction"), check_temperature(celsius(temperature), 0, 100)
     if not 0 <= C <= 1:
         raise InputError(f"weight_fraction = {show(weight_fraction)} must lie between 0 and 1: the glycerol in the weight.")

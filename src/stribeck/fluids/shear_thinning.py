@@ -15,7 +15,7 @@ the fluid for the flow along the film too, so that the film depends on s.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
@@ -24,7 +24,7 @@ from stribeck._types import Array
 from stribeck.fluids.fluid import MAX_CACHED_SHAPES, Decay
 from stribeck.fluids.laws import DensityLaw, Profile, RateLaw, ViscosityLaw, joined_names, joined_parameters, notes_of
 from stribeck.fluids.local_flow import profile
-from stribeck.fluids.newtonian import Newtonian, of_pressure
+from stribeck.fluids.newtonian import Column, Newtonian
 from stribeck.fluids.rheology.viscosity import Constant, Incompressible
 from stribeck.numerics.trace import Trace, mapped, pointwise, value_of
 
@@ -48,7 +48,7 @@ class _Flow(NamedTuple):
 
 
 @dataclass(frozen=True)
-class ShearThinning:
+class ShearThinning(Column):
     """The fluid whose viscosity falls with the shear rate."""
 
     law: RateLaw  # Stress as a function of the rate, in Hertz units
@@ -57,15 +57,7 @@ class ShearThinning:
     slide: float = 1.0  # Half the slide-to-roll ratio, `s = (u1 - u2)/(u1 + u2)`
     entrained: float = 1.0  # Sum of the speeds over U, see :meth:`moving`
     speed: Any = field(default=1.0, compare=False)  # Speed group at which the film is looked at, see :meth:`at`
-    uses_pressure: bool = field(init=False, repr=False, compare=False)
-    _known: dict[int, _Flow] = field(init=False, repr=False, compare=False)
     uses_speed: ClassVar[bool] = True
-
-    def __post_init__(self) -> None:
-        """Note whether viscosity or density depend on the pressure."""
-        uses_pressure = not (isinstance(self.viscosity, Constant) and isinstance(self.density, Incompressible))
-        object.__setattr__(self, "uses_pressure", uses_pressure)
-        object.__setattr__(self, "_known", {})
 
     @property
     def name(self) -> str:
@@ -79,19 +71,7 @@ class ShearThinning:
 
     def at(self, speed: Any) -> Self:
         """Return the film at a speed group."""
-        found = replace(self, speed=speed)
-        object.__setattr__(found, "_known", self._known)
-        return found
-
-    def moving(self, share: float) -> Self:
-        """Return the film between walls at a share of their speeds."""
-        found = replace(self, slide=share * self.slide, entrained=share * self.entrained)
-        object.__setattr__(found, "_known", self._known)
-        return found
-
-    def held(self, gap: Any, pressure: Any) -> Any:
-        """Return the gap times the density ratio."""
-        return gap * of_pressure(self.viscosity, self.density, pressure)[1] if self.uses_pressure else gap
+        return self._changed(speed=speed)
 
     @property
     def at_low_rates(self) -> Newtonian:
@@ -115,7 +95,7 @@ class ShearThinning:
 
     def cavity_traction(self, gap: Any, pressure: Any, flux_gap: Any) -> Any:
         """Return the stress at the rate ``s/h`` in the part of the width that is wet."""
-        eta, rho, wi = self._of_pressure(gap, pressure)
+        eta, rho, wi = self._laws(pressure)
 
         # Above zero, where the viscosity of some laws has no slope.
         size = np.maximum(wi * abs(self.slide) / gap, MIN_WEISSENBERG)
@@ -134,10 +114,9 @@ class ShearThinning:
             "power law is constant here, which the inlet feels. Give the viscosity at a lower rate, with its longer time",
         )
 
-    def _of_pressure(self, gap: Any, pressure: Any) -> tuple[Any, Any, Any]:
+    def _laws(self, pressure: Any) -> tuple[Any, Any, Any]:
         """Return viscosity, density and the relaxation time over that of the film: it grows as the viscosity."""
-        one = np.ones_like(value_of(gap))
-        eta, rho = of_pressure(self.viscosity, self.density, pressure) if self.uses_pressure else (one, one)
+        eta, rho = self._of_pressure(pressure)
         return eta, rho, np.maximum(self._times(), MIN_WEISSENBERG) * eta
 
     def _times(self) -> Any:
@@ -146,7 +125,7 @@ class ShearThinning:
 
     def _stress(self, gap: Any, pressure: Any, flux_gap: Any) -> tuple[Any, Any, Any]:
         """Return the viscosity, and over it the mean of the stress across the film and its change from wall to wall."""
-        eta, rho, wi = self._of_pressure(gap, pressure)
+        eta, rho, wi = self._laws(pressure)
         r_0 = -(wi * self.slide / gap)
         carried_along = gap if self.entrained == 1.0 else self.entrained * gap
         r_1 = 0.5 * wi * (carried_along - flux_gap / rho) / (gap * gap)

@@ -11,10 +11,9 @@ from typing import ClassVar
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.settings import ROUNDING
-from stribeck.profiles.check_profile import as_profile
-from stribeck.profiles.profile import Departure, Parabola, Profile, Undeformed
+from stribeck.profiles.profile import Departure, Parabola, Profile, Undeformed, as_profile
 from stribeck.quantities.schema import Input, law, numbers_of
 from stribeck.quantities.units import InputError
 

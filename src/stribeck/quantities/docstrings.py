@@ -27,8 +27,8 @@ class Described:
 
     _words: ClassVar[dict[str, Words]] = {}
 
-    def __init_subclass__(cls) -> None:
-        """Put what is said of the fields into the docstring."""
+    def __init_subclass__(cls, title: str = "Attributes") -> None:
+        """Put what is said of the fields into the docstring, under ``title``."""
         super().__init_subclass__()
         own: dict[str, Words] = {}
         for name, text in inspect.get_annotations(cls).items():
@@ -39,7 +39,7 @@ class Described:
         if own:
             listed = "\n".join(f"{name} : {each.kind}\n    {_sentence(each)}" for name, each in cls._words.items())
             head, *rest = re.split(r"(?m)^(?=(?:Raises|Notes|Examples)\n-)", inspect.getdoc(cls) or "")
-            cls.__doc__ = f"{head.strip()}\n\nAttributes\n----------\n{listed}\n\n{''.join(rest)}".rstrip() + "\n"
+            cls.__doc__ = f"{head.strip()}\n\n{title}\n----------\n{listed}\n\n{''.join(rest)}".rstrip() + "\n"
 
 
 def _sentence(words: Words) -> str:

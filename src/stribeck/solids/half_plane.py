@@ -24,8 +24,7 @@ from numpy.polynomial import legendre
 from stribeck._types import Array, Flags, Indices
 from stribeck.numerics.panels import HalfTail, Mesh, reference
 from stribeck.quantities.units import InputError, show
-from stribeck.solids.check_solid import check_solid
-from stribeck.solids.solid import Solid
+from stribeck.solids.solid import Solid, check_solid
 
 # Error of a panel's own Gauss rule for the logarithm, rho**(-2 order) at (rho + 1/rho)/2 half-widths, below which it serves.
 FAR_RULE_ERROR = 4e-13

@@ -32,7 +32,7 @@ from numpy.polynomial import chebyshev
 from stribeck._types import Array, Flags
 from stribeck.numerics.cells import Cells
 from stribeck.numerics.panels import Mesh, reference
-from stribeck.quantities.schema import Input, law, numbers_of
+from stribeck.quantities.schema import Input, law
 from stribeck.solids.half_plane import nodal_deflection
 from stribeck.solids.solid import Lengths, Solid
 
@@ -92,11 +92,6 @@ class Layer(Solid):
         default=0.5,
         is_free=False,
     )
-
-    @property
-    def parameters(self) -> dict[str, float | str]:
-        """Thickness and Poisson's ratio."""
-        return {name: getattr(self, name) for name in numbers_of(type(self))}
 
     @property
     def lengths(self) -> Lengths:

@@ -8,11 +8,13 @@ Source: [Johnson 1985] section 4.1, for shapes that differ by little from planes
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.numerics.panels import Mesh
+from stribeck.quantities.docstrings import Described
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solids.half_plane import as_solid
 from stribeck.solids.solid import Lengths, Solid, lengths_of
@@ -21,17 +23,10 @@ __all__ = ["TwoBodies"]
 
 
 @dataclass(frozen=True, init=False)
-class TwoBodies:
+class TwoBodies(Described, title="Parameters"):
     """Two bodies of different shapes, such as a layer and a half-space.
 
     Two half-spaces need nothing of this: they are one with the modulus of both.
-
-    Parameters
-    ----------
-    first, second : solid of sb.solids
-        The bodies; None is a half-space.
-    first_share : float
-        Share of the first in the compliance, ``E*/E1*``, 0 to 1 [-], with E* the modulus of the contact.
 
     Raises
     ------
@@ -39,9 +34,11 @@ class TwoBodies:
         Where the share is impossible, or a body is none.
     """
 
-    first: Solid
-    second: Solid
-    first_share: float
+    first: Annotated[Solid, "the first body; a half-space by default"]
+    second: Annotated[Solid, "the other one, likewise"]
+    first_share: Annotated[
+        float, "share of the first in the compliance, ``E*/E1*``, 0 to 1, with E* the modulus of the contact", "1"
+    ]
 
     def __init__(self, first: Solid | None = None, second: Solid | None = None, first_share: float = 0.5) -> None:
         share = to_si(first_share, "number", "first_share")

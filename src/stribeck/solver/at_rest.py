@@ -15,7 +15,7 @@ from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contact_laws.scaled import ShiftedLaw
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import BASE_MODEL, Model
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.series import along
 from stribeck.numerics.settings import NEGLIGIBLE
 

@@ -35,9 +35,8 @@ from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.mesh_choice import mesh_for
 from stribeck.equations.prediction import extrapolate
 from stribeck.equations.state import MIN_GAP, State, solve_state
-from stribeck.fluids.blend import blend
-from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.newtonian import Newtonian
+from stribeck.fluids.fluid import Cavitation
+from stribeck.fluids.newtonian import Newtonian, blend
 from stribeck.numerics.continuation import StepPath, Steps
 from stribeck.numerics.newton import root_between
 from stribeck.numerics.panels import Mesh, MeshTooLargeError

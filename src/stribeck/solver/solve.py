@@ -22,7 +22,7 @@ from stribeck.contacts.notes import cavitation_notes, fluid_notes, law_notes, po
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.observables import Observables, drag_parts
 from stribeck.equations.state import State
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.continuation import StepPath
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.settings import MAX_RTOL, MIN_RTOL, NEGLIGIBLE, SAFETY

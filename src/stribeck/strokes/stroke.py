@@ -15,7 +15,7 @@ from stribeck.contacts.groups import Groups
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.operators import Operators
 from stribeck.equations.state import State
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.motions.motion import Motion, checked_motion
 from stribeck.numerics.settings import COARSE_ORDER, COARSE_RTOL, LEAST_DEGREE, NEGLIGIBLE, SAFETY
 from stribeck.numerics.threads import one_blas_thread

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.fluids.liquids import celsius
+from stribeck.fluids.description import celsius
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError

@@ -15,6 +15,7 @@ Source: ours, as [BP] Appendix C and D for the line; theory.md, section 11.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache, partial
@@ -25,12 +26,13 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Limit, Value, checked_load, fluid_number, formula
-from stribeck.asymptotics.point.logarithm import friction_of
 from stribeck.asymptotics.point.rest import CATALAN
+from stribeck.contacts.cut_off import COUETTE, FULL_FAR_FILM, POISEUILLE, far_logarithms, log_cut_offs
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
 from stribeck.numerics.fourier_panels import lobatto
-from stribeck.quantities.units import checked_word
+from stribeck.quantities.arrays import real_array
+from stribeck.quantities.units import InputError, checked_word, show
 
 PhiForm = Literal["quadrature", "closed"]
 
@@ -52,6 +54,8 @@ ELEMENT_DEGREE = 16  # Degree of the elements: the integrals err by 1e-12 for lo
 ELEMENTS = 12  # Number of the elements.
 DOMAIN_LENGTH = 19.0  # Length of the integrals in artanh(r): 1e-16 of the whole is left out.
 MAX_GAP = 1e50  # A up to which powers of the gap stay in double precision; above it the integrals are zero.
+
+LOGARITHM_COEFFICIENT = COUETTE + POISEUILLE  # Coefficient of lambda ln X, 16 pi/15.
 
 
 @dataclass(frozen=True)
@@ -168,10 +172,10 @@ def edge_factor(A: Array, kappa: Value, coefficients: tuple[float, float, float]
     return np.asarray(1 + np.polynomial.polynomial.polyval(A, coefficients) * np.power(kappa, 2 / 3))
 
 
-_slow = partial(formula, plane="mixed", geometry="point", limits=SLOW_RANGE)
+_slow = partial(formula, plane="mixed", geometry="point", limits=SLOW_RANGE, undefined="from load 1 on")
 
 
-@_slow(undefined="from load 1 on", worst=0.06, source="ours; the coefficients are fitted")
+@_slow(worst=0.06, source="ours; the coefficients are fitted")
 def fluid_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = "quadrature") -> Value:
     r"""Return the load share of the fluid under a slow rough ball.
 
@@ -195,7 +199,7 @@ def fluid_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = "q
     )
 
 
-@_slow(undefined="from load 1 on", worst=2e-4, source="ours")
+@_slow(worst=2e-4, source="ours")
 def contact_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = "quadrature") -> Value:
     r"""Return the load share of the asperities under a slow rough ball.
 
@@ -204,7 +208,7 @@ def contact_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = 
     return 1 - fluid_load_share.function(groups, with_edges, form)
 
 
-@_slow(undefined="from load 1 on", worst=0.09, source="ours")
+@_slow(worst=0.09, source="ours")
 def viscous_friction(
     groups: Groups, beta: float = 1.0, definition: Definition = "balanced", wetted_radius: float | None = None
 ) -> Value:
@@ -228,7 +232,7 @@ def viscous_friction(
     return friction_of(groups, J, beta, definition, wetted_radius)[()]
 
 
-@_slow(limits=(*SLOW_RANGE, Limit("beta/mu0", 0.0, 1.0)), undefined="from load 1 on", worst=1e-3, source="ours")
+@_slow(limits=(*SLOW_RANGE, Limit("beta/mu0", 0.0, 1.0)), worst=1e-3, source="ours")
 def friction(
     groups: Groups,
     boundary_friction: float = 1.0,
@@ -242,3 +246,38 @@ def friction(
     """
     viscous = viscous_friction.function(groups, beta, definition, wetted_radius)
     return boundary_friction * contact_load_share.function(groups) + viscous
+
+
+def far_integral(slope: Value, wetted_radius: Value | None = None, film: Value = 0.0) -> Array:
+    r"""Return what the liquid around the contact adds to the friction integral, over the speed group.
+
+    .. math:: \tfrac{16}{15} \pi \ln X + \tfrac{8}{15} \pi \ln(1 + y) + \tfrac25 \pi \frac{y}{1 + y}, \quad y = 2 h(0)/X^2
+
+    The gap in the middle h(0), ``film``, counts where it is no longer thin beside the gap at the wetted radius X.  One surface
+    rests; source: :mod:`stribeck.contacts.cut_off`.
+    """
+    radius: Value = math.inf
+    if wetted_radius is not None:
+        radius = real_array("wetted_radius", wetted_radius)
+        if not np.all((radius > 1) & (radius < math.inf)):
+            raise InputError(
+                f"wetted_radius = {show(wetted_radius)}; in Hertz radii it must exceed 1, the edge of the contact."
+            )
+    with np.errstate(divide="ignore"):
+        logarithms = log_cut_offs(np.asarray(slope, dtype=float), radius)
+        start = -0.5 * np.log(2.0 * np.asarray(film))
+    by_shear, by_pressure, _ = far_logarithms(*logarithms, start, FULL_FAR_FILM.rise)
+    return np.asarray(COUETTE * by_shear + POISEUILLE * by_pressure)
+
+
+def friction_of(
+    groups: Groups, J: Value, beta: float, definition: Definition, wetted_radius: float | None, film: Value = 0.0
+) -> Array:
+    """Return the friction coefficient of the finite part J of a friction integral, with the liquid around the contact."""
+    if beta == 0:
+        return np.zeros(np.shape(J))
+    J = J + np.multiply(groups.speed, far_integral(groups.slope(beta), wetted_radius, film))
+    if definition == "published" and wetted_radius is not None:
+        # A disc of liquid ends with a pressure at its rim.
+        J = J + POISEUILLE * np.asarray(groups.speed) / (1.0 + 2.0 * film / np.square(wetted_radius))
+    return np.asarray(0.75 * beta * np.power(groups.load, 1 / 3) * J)

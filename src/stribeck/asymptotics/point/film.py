@@ -35,7 +35,7 @@ BRIDGE_COEFFICIENTS = (-0.35423, -0.055968, -0.05253, 0.094462, 0.53295, -0.1085
 _film = partial(formula, uses=("speed",), plane="smooth", geometry="point", limits=(Limit("speed", 0.0, 1e-2),))
 
 
-@_film(predicts="central_gap", worst=0.014, source="ours; inlet of Snoeijer, Eggers and Venner (2013)")
+@_film(worst=0.014, source="ours; inlet of Snoeijer, Eggers and Venner (2013)")
 def central_gap_slow(groups: Groups, leakage: bool = True) -> Value:
     r"""Return the gap in the middle of a slow smooth ball.
 
@@ -83,7 +83,6 @@ def film_of(speed: Value) -> Value:
 
 
 @_film(
-    predicts="gap",
     limits=(Limit("speed", 0.0, 1e-3),),
     undefined="from the edge of the contact outwards, where this has no value",
     worst=0.03,

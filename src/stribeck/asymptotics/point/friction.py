@@ -17,9 +17,8 @@ from stribeck._types import Array
 from stribeck.asymptotics.constants import BALL_FILM_CONSTANT
 from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Limit, Value, formula
-from stribeck.asymptotics.point.boundary import edge_factor, gap_at_rest
+from stribeck.asymptotics.point.boundary import LOGARITHM_COEFFICIENT, edge_factor, friction_of, gap_at_rest
 from stribeck.asymptotics.point.film import film_of
-from stribeck.asymptotics.point.logarithm import LOGARITHM_COEFFICIENT, friction_of
 from stribeck.asymptotics.point.rigid import GAP_COEFFICIENT
 from stribeck.asymptotics.point.sharing import FIT_RANGE, film_speed_ratio, log_odds, speed_of_share
 from stribeck.asymptotics.uniform import first_moment
@@ -62,7 +61,6 @@ def smooth_integral(speed: Value) -> Value:
 
 
 @formula(
-    predicts="viscous_friction",
     uses=("speed", "load"),
     plane="smooth",
     geometry="point",
@@ -89,10 +87,10 @@ def viscous_friction_smooth(
     return friction_of(groups, J, beta, definition, wetted_radius, film_of(groups.speed))[()]
 
 
-_rough = partial(formula, plane="mixed", geometry="point")
+_rough = partial(formula, plane="mixed", geometry="point", undefined="from load 1 on")
 
 
-@_rough(limits=(*FIT_RANGE, Limit("film_ratio", 0.0, 12.0)), undefined="from load 1 on", worst=0.22, source="ours")
+@_rough(limits=(*FIT_RANGE, Limit("film_ratio", 0.0, 12.0)), worst=0.22, source="ours")
 def viscous_friction(
     groups: Groups, beta: float = 1.0, definition: Definition = "balanced", wetted_radius: float | None = None
 ) -> Value:
@@ -116,7 +114,6 @@ def viscous_friction(
 
 @_rough(
     limits=(*FIT_RANGE, Limit("beta/mu0", 0.1, 1.0)),
-    undefined="from load 1 on",
     worst=0.15,
     source="ours, with :mod:`stribeck.asymptotics.point.sharing`",
 )

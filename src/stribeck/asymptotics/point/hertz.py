@@ -10,20 +10,17 @@ from functools import partial
 
 import numpy as np
 
-from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.formula import Limit, Value
+from stribeck.asymptotics.hertz import dry
 from stribeck.contacts.groups import Groups
 from stribeck.solids import hertz
 
 HERTZ_OFFSET = -1.0  # Offset of the dry smooth contact [u_Hz]: the ball has come closer by the indentation.
 
 _dry = partial(
-    formula,
-    uses=(),
-    plane="mixed",
+    dry,
     geometry="point",
     limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-3)),
-    small="relative_roughness",
-    error_order=1,
 )
 
 

@@ -13,9 +13,9 @@ from functools import partial
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.asymptotics.edge_layer import layer
-from stribeck.asymptotics.formula import Limit, Value, formula, second
-from stribeck.asymptotics.rest import below_one
+from stribeck.asymptotics import rest
+from stribeck.asymptotics.edge_layer import at_edge, coordinate, layer
+from stribeck.asymptotics.formula import Limit, Value, second
 from stribeck.contacts.groups import Groups
 
 CATALAN = 0.915965594177219  # Catalan's constant.
@@ -26,15 +26,7 @@ OFFSET_CONSTANT = 0.6532
 
 GAUSS_RULE = np.polynomial.legendre.leggauss(40)  # Rule of the correction of the pressure, good to rounding.
 
-_large_indentation = partial(
-    formula,
-    uses=("load", "relative_roughness"),
-    plane="rest",
-    geometry="point",
-    limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-2)),
-    small="relative_roughness",
-    error_order=1,
-)
+_large_indentation = partial(rest.large_indentation, geometry="point")
 
 
 @_large_indentation(
@@ -55,7 +47,7 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
     Compared with the solver up to 0.9 of the radius; the edge has a layer of width kappa**(2/3).  Under the first term the
     half-space carries :math:`\kappa p_1` beside Hertz's pressure, by Abel's transform, and a ring at the edge.
     """
-    x, below = np.asarray(x, dtype=float), below_one(x)
+    x, below = np.asarray(x, dtype=float), rest.below_one(x)
     kappa = np.asarray(groups.relative_roughness)
     leading: Array = -kappa * (np.log(groups.load) / 3 + 0.5 * np.log(below))
     if second(terms) == 0:
@@ -100,12 +92,9 @@ def offset(groups: Groups, terms: int = 1) -> Value:
 
 
 _at_edge = partial(
-    formula,
-    plane="rest",
+    at_edge,
     geometry="point",
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-5, 1e-2)),
-    small="relative_roughness",
-    error_order=2 / 3,
     source="ours, with the edge of the line",
 )
 
@@ -123,7 +112,7 @@ def edge_gap(groups: Groups, x: Value) -> Value:
     """
     kappa = groups.relative_roughness
     wide = np.multiply(math.pi / 4, kappa)
-    return kappa * (-(np.log(groups.load) + np.log(wide)) / 3 + layer().gap(_coordinate(kappa, x)))
+    return kappa * (-(np.log(groups.load) + np.log(wide)) / 3 + layer().gap(coordinate(x, 1 - kappa, wide)))
 
 
 @_at_edge(predicts="contact_pressure", uses=("relative_roughness",), worst=0.07)
@@ -136,21 +125,19 @@ def edge_contact_pressure(groups: Groups, x: Value) -> Value:
     Compared with the solver within 5 widths of the edge.
     """
     kappa = groups.relative_roughness
-    return np.power(math.pi / 4 * np.asarray(kappa), 1 / 3) * np.exp(-layer().gap(_coordinate(kappa, x)))
+    wide = np.multiply(math.pi / 4, kappa)
+    return np.power(wide, 1 / 3) * np.exp(-layer().gap(coordinate(x, 1 - kappa, wide)))
 
 
 _small_indentation = partial(
-    formula,
-    uses=("load", "relative_roughness"),
-    plane="rest",
+    rest.small_indentation,
     geometry="point",
     limits=(Limit("load", 1e-7, 0.5), Limit("1/relative_roughness", 0, 0.2)),
-    small="1/relative_roughness",
     source="ours, as for the line",
 )
 
 
-@_small_indentation(predicts="central_gap", worst=0.006, error_order=1.5)
+@_small_indentation(worst=0.006, error_order=1.5)
 def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
     r"""Return the gap in the middle of a very rough ball at rest, which is hardly deflected.
 
@@ -167,7 +154,7 @@ def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
     return (leading + second(terms) * (4 - 2 * math.sqrt(2)) / (3 * np.sqrt(2 * math.pi * kappa)))[()]
 
 
-@_small_indentation(predicts="offset", worst=6e-5, error_order=3)
+@_small_indentation(worst=6e-5, error_order=3)
 def offset_small_indentation(groups: Groups) -> Value:
     r"""Return the offset of a very rough ball at rest.
 
@@ -189,8 +176,3 @@ def pressure_correction(r: Array) -> Array:
     slope = (0.5 * np.sin(2 * phi) - phi + math.pi * np.sin(phi / 2) ** 2) / away**2
     integral = (slope / np.sqrt((1 - away) * (1 + away))) @ (math.pi / 4 * GAUSS_RULE[1])
     return np.asarray(-1 / np.sqrt((1 - r[..., 0]) * (1 + r[..., 0])) - 0.5 * integral)
-
-
-def _coordinate(kappa: Value, x: Value) -> Array:
-    """Return the distance from the edge in widths of its layer."""
-    return np.divide(np.abs(x) - 1 + kappa, np.power(math.pi / 4 * np.asarray(kappa), 2 / 3))

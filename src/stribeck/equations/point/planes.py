@@ -7,9 +7,8 @@ from typing import Any
 
 from stribeck.equations.point.films import BlendedPlane, NewtonianPlane, PlaneFilm
 from stribeck.equations.thinning.plane import ThinningPlane
-from stribeck.fluids.blend import Blend
 from stribeck.fluids.fluid import Film
-from stribeck.fluids.newtonian import Newtonian
+from stribeck.fluids.newtonian import Blend, Newtonian
 from stribeck.fluids.shear_thinning import ShearThinning
 
 # The flow in the plane, by the kind of film.

@@ -27,7 +27,7 @@ from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.parts import KINDS, LAW_NUMBERS
 from stribeck.explorer.inputs.inputs import Inputs, exact_text, plain_words, with_liquid, with_text
 from stribeck.explorer.inputs.typed import liquid_of
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.schema import needed_of, numbers_of
 from stribeck.quantities.units import InputError, checked_word

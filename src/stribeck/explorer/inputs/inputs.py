@@ -29,7 +29,7 @@ from stribeck.contacts.groups import GROUP_INPUTS
 from stribeck.contacts.inputs import InputTable
 from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.explorer.inputs.typed import entries_of, examples
-from stribeck.fluids.liquids import Liquid
+from stribeck.fluids.description import Liquid
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.schema import Input
 from stribeck.quantities.units import DIMENSIONS, InputError, read_number, show, to_si

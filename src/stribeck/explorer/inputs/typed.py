@@ -14,7 +14,7 @@ from typing import Any
 
 from stribeck.contacts.forms import FORMS, Form
 from stribeck.contacts.inputs import InputTable
-from stribeck.fluids.liquids import Liquid
+from stribeck.fluids.description import Liquid
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError, show

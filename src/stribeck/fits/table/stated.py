@@ -11,7 +11,7 @@ from stribeck.files.cells import is_named
 from stribeck.files.columns import stated_in
 from stribeck.files.text_table import TextTable
 from stribeck.fits.table.rig import PATTERNS
-from stribeck.fluids.liquids import celsius
+from stribeck.fluids.description import celsius
 from stribeck.quantities.units import InputError
 
 __all__ = ["entries_of", "inputs_said"]

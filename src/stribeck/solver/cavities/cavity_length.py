@@ -15,7 +15,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.groups import Groups
 from stribeck.equations.state import State
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.continuation import StepPath
 from stribeck.numerics.settings import COARSE_ORDER, MAX_REFINEMENTS, NEGLIGIBLE
 from stribeck.solver.cold_start import coarse_path, coarse_state, first_path

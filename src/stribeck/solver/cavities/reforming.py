@@ -8,7 +8,7 @@ from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import Model
 from stribeck.equations.cavities.system import CavitatedSystem
 from stribeck.equations.point.system import Unknowns
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.estimate import Pair
 from stribeck.solver.point.level import Level

@@ -14,9 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stribeck._types import Array, Numbers
-from stribeck.contact_laws.continued import ContinuedLaw
 from stribeck.contact_laws.exponential import ExponentialLaw
-from stribeck.contact_laws.scaled import ScaledLaw
+from stribeck.contact_laws.scaled import ContinuedLaw, ScaledLaw
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.gap import gap_beside
 from stribeck.equations.line import LOAD, Equations, Fields

@@ -8,14 +8,14 @@ from dataclasses import replace
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.continued import misfit
 from stribeck.contact_laws.law import is_exponential
+from stribeck.contact_laws.scaled import misfit
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import Model
 from stribeck.equations.line import Equations
 from stribeck.equations.observables import ROW
 from stribeck.equations.state import State
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.rheology.viscosity import Barus, Constant, DowsonHigginson, Incompressible, Roelands
 from stribeck.numerics.newton import Root

@@ -21,7 +21,7 @@ from stribeck.equations.prediction import extrapolate
 from stribeck.equations.real_area import area_of_state
 from stribeck.equations.sensitivity import Change, log_derivatives
 from stribeck.equations.state import State, solve_state
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.newton import Inverse
 from stribeck.numerics.settings import MAX_BYTES, NEGLIGIBLE, SHARE, STEP_GROWTH
 from stribeck.quantities.outputs import AREA

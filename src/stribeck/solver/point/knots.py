@@ -13,7 +13,7 @@ from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.groups import Groups
 from stribeck.equations.point.observables import MINIMA, OBSERVABLES, WITHIN, identity_error
 from stribeck.equations.point.system import Equations, Unknowns
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.hermite import weights_through
 from stribeck.numerics.settings import HALF_DIGITS, LOG_STEP, MAX_AMPLIFICATION, MIN_LOG_STEP, NEGLIGIBLE, SHARE
 from stribeck.quantities.lazy import cached_property

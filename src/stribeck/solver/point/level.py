@@ -20,7 +20,7 @@ from stribeck.equations.point.iteration import Iterated, iterate
 from stribeck.equations.point.mesh_choice import MeshTooLargeError, Resolution, bytes_of, operators_of
 from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.system import Equations, Operators, Unknowns
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.numerics.settings import HALF_DIGITS, MAX_BYTES
 from stribeck.quantities.outcome import Outcome

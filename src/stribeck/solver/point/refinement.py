@@ -28,7 +28,7 @@ from stribeck.equations.point.mesh_choice import (
     split_where_poor,
 )
 from stribeck.equations.point.system import Unknowns
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.numerics.settings import (
     COARSE_RTOL,

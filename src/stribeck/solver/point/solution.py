@@ -23,7 +23,7 @@ from stribeck.contacts.notes import (
     shape_notes,
 )
 from stribeck.equations.point.observables import OBSERVABLES
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.settings import MAX_BYTES
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property

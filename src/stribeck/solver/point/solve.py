@@ -21,8 +21,7 @@ from stribeck.equations.point.mesh_choice import MeshTooLargeError, operators_of
 from stribeck.equations.point.observables import OBSERVABLES, identity_error
 from stribeck.equations.point.planes import PLANES
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
-from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.fluid import Film
+from stribeck.fluids.fluid import Cavitation, Film
 from stribeck.fluids.laws import RateLaw
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.rheology.viscosity import Constant, Incompressible

@@ -27,7 +27,7 @@ from stribeck.equations.point.mesh_choice import (
     resolution,
 )
 from stribeck.equations.point.system import Unknowns
-from stribeck.fluids.blend import blend
+from stribeck.fluids.newtonian import blend
 from stribeck.numerics.continuation import Steps, extrapolation_weights
 from stribeck.numerics.settings import COARSE_RTOL, LEAST_DEGREE, LEAST_MODES, NEGLIGIBLE
 from stribeck.quantities.outcome import Outcome

@@ -20,7 +20,7 @@ from stribeck.contacts.groups import Groups
 from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.equations.point.observables import OBSERVABLES, WITHIN, FrictionWithin, observables
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
-from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Cavitation
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import AREA
