@@ -2,5 +2,4 @@
 
 from stribeck.quantities.lazy import lazy_names as _lazy_names
 
-_HOMES = {"loop_fit": ("fit_loop",), "reading": ("read",)}
-__all__, __getattr__, __dir__ = _lazy_names(__name__, _HOMES)
+__all__, __getattr__, __dir__ = _lazy_names(__name__)

@@ -77,15 +77,9 @@ class _GaussianHeights(AsperityLaw):
 
     order: ClassVar[float]
     name: ClassVar[str]
-    lowest: ClassVar[float] = -math.inf
     fixed_alpha: ClassVar[float] = 1.0
     """The only alpha: separations are in standard deviations of the summit heights, which is the h_rms of the contact."""
     beta_formula: ClassVar[str]
-
-    @property
-    def parameters(self) -> dict[str, float | str]:
-        """None: the law has no parameter beside alpha, beta and h_rms."""
-        return {}
 
     def log_pressure(self, separation: Any) -> Any:
         """Return ln(Phi) at the separation ``s = alpha h/h_rms``."""

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stribeck._types import Array
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.numerics.trace import pointwise
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property
@@ -36,7 +37,7 @@ END_PRESSURE_RATIO = 1e-3  # Pressure at the end of a table over the largest of 
 
 
 @dataclass(frozen=True)
-class TableLaw:
+class TableLaw(AsperityLaw):
     r"""Contact law interpolated between the rows of a table.
 
     .. math:: \Phi(s_i) = p_i/(\beta E^*), \qquad s_i = \alpha h_i/h_\mathrm{rms}
@@ -138,11 +139,6 @@ class TableLaw:
             "first_separation": self.separation[0],
             "last_separation": self.separation[-1],
         }
-
-    @property
-    def lowest(self) -> float:
-        """Minus infinity: the table goes on straight."""
-        return -math.inf
 
     @cached_property
     def _spline(self) -> tuple[Any, Any, int]:

@@ -2,5 +2,4 @@
 
 from stribeck.quantities.lazy import lazy_names as _lazy_names
 
-_HOMES = {"ramp": ("Ramp",), "sine": ("Sine",), "stop": ("Stop",), "table": ("Table",)}
-__all__, __getattr__, __dir__ = _lazy_names(__name__, _HOMES, has_laws=True)
+__all__, __getattr__, __dir__ = _lazy_names(__name__, has_laws=True)

@@ -2,9 +2,4 @@
 
 from stribeck.quantities.lazy import lazy_names as _lazy_names
 
-_HOMES = {
-    "dry": ("DryContact", "dry_contact"),
-    "shapes": ("Cylinder", "Grooved", "Land", "Lip", "Worn"),
-    "table": ("Table", "from_pressure"),
-}
-__all__, __getattr__, __dir__ = _lazy_names(__name__, _HOMES, has_laws=True)
+__all__, __getattr__, __dir__ = _lazy_names(__name__, has_laws=True)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import functools
+import re
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from importlib import import_module
 from typing import TypeVar
 
@@ -28,26 +29,27 @@ class cached_property(functools.cached_property[T]):  # noqa: N801
         return found
 
 
-def lazy_names(
-    package: str, homes: Mapping[str, Sequence[str]], packages: Sequence[str] = (), *, root: str = "", has_laws: bool = False
-) -> tuple[list[str], Callable[[str], object], Callable[[], list[str]]]:
-    """Return ``__all__``, ``__getattr__`` and ``__dir__`` of a package, whose names live in modules of it or of ``root``."""
-    modules = {name: module for module, names in homes.items() for name in names}
-    public = sorted([*packages, *modules])
+def lazy_names(package: str, *, has_laws: bool = False) -> tuple[list[str], Callable[[str], object], Callable[[], list[str]]]:
+    """Return ``__all__``, ``__getattr__`` and ``__dir__`` of a package, whose stub says where each of its names is."""
+    [folder] = sys.modules[package].__path__
+    with open(f"{folder}/__init__.pyi", encoding="utf-8") as stub:
+        imports = re.findall(r"^from (\S+) import (\([^)]*\)|.*)", stub.read(), re.MULTILINE)
+    homes = {name: home for home, names in imports for name in re.findall(r"\w+", names)}
+    public = sorted(homes)
 
     def find(name: str) -> object:
         """Import a public name on its first use."""
-        if name in packages:
-            return import_module(f"{package}.{name}")
-        if name not in modules and has_laws and name[:1].isupper():
+        if name not in homes and has_laws and name[:1].isupper():
             law = import_module("stribeck.quantities.registry").law_class(package, name)
             if law is not None:
                 return law
-        if name not in modules:
+        if name not in homes:
             # Of names that Python itself asks for nothing is near.
             near = "" if name.startswith("_") else import_module("stribeck.quantities.keywords").nearest(name, public)
             raise AttributeError(f"module {package!r} has no attribute {name!r}{f'; did you mean {near}?' if near else ''}")
-        found = getattr(import_module(f"{root or package}.{modules[name]}"), name)
+        if homes[name] == package:
+            return import_module(f"{package}.{name}")
+        found = getattr(import_module(homes[name]), name)
         setattr(sys.modules[package], name, found)
         return found
 
