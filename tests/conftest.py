@@ -29,7 +29,7 @@ settings.load_profile("repeated")
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config, log):
-    """Keep the tests of a module in one worker, as they share solved states; those of the figures in one for both.
+    """Keep the tests of a module in one worker, as they share solved states.
 
     The golden values share nothing, and take longest: each of their parts goes to any worker.
 
@@ -41,7 +41,7 @@ def pytest_xdist_make_scheduler(config, log):
         def _split_scope(self, nodeid):
             if "/test_golden.py::" in f"/{nodeid}":
                 return nodeid
-            return super()._split_scope(nodeid).replace("_claims", "")
+            return super()._split_scope(nodeid)
 
     return Together(config, log)
 

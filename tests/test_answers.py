@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from command_line import EXAMPLES, HEAVY, PDMS, SWEEP, call, case_text
+from command_line import EXAMPLES, HEAVY, SWEEP, call, case_text
 
 import stribeck as sb
 
@@ -63,12 +63,6 @@ def test_the_answer_of_a_command_fits_a_screen(capsys, command, path):
     assert (answer.code, answer.err) == (0, "")
     assert height(answer.out) <= LINES, answer.out
     assert answer.out.splitlines()[-1].startswith("-v shows ")
-
-
-def test_the_way_to_other_regimes_is_a_table(capsys):
-    out = call(capsys, "regimes", PDMS).out
-    assert re.search(r"^ input +value +friction at \+10 % +to boundary +to hydrodynamic$", out, re.M)
-    assert re.search(r"^ speed +1 mm/s +\S+ % +/ 2\.72 \(368 µm/s\) +x 30\.5 \(30\.5 mm/s\)$", out, re.M)
 
 
 def test_a_note_that_repeats_a_doubt_is_not_said_twice(capsys, tmp_path):

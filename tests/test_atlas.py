@@ -255,11 +255,6 @@ def test_outside_the_box_and_wrong_arguments_it_refuses():
             sb.atlas.friction(sb.Groups(1e-3, 0.1, 1e-4), **wrong)
 
 
-def test_the_ends_of_the_box_belong_to_it():
-    speed, load, kappa = map(np.ravel, np.meshgrid([1e-12, 1e6], [1e-6, 1.0], [1e-6, 1e2]))
-    assert np.isfinite([function(sb.Groups(speed, load, kappa * load)) for function in FUNCTIONS]).all()
-
-
 # --- the table ---
 
 
@@ -287,18 +282,6 @@ def test_blocks_meet_within_the_stated_error():
     kappa = np.exp(rng.uniform(np.log(1e-6), np.log(1e-3), 300))
     below, above = (sb.atlas.friction(sb.Groups(speed, 0.99 * (1 + side), kappa * 0.99)) for side in (-1e-9, 1e-9))
     assert np.abs(below / above - 1).max() < 5e-5
-
-
-def test_a_build_goes_on_with_what_is_kept(tmp_path):
-    calls = []
-
-    def make():
-        calls.append(1)
-        return np.arange(3.0)
-
-    for _ in range(2):
-        assert (atlas_build.kept(tmp_path, "rows", make) == np.arange(3.0)).all()
-    assert len(calls) == 1
 
 
 # --- curves, diagrams and sensitivities read off it ---

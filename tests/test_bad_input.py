@@ -84,21 +84,6 @@ def test_a_case_that_cannot_be_is_refused_by_key_value_and_what_is_allowed(capsy
         assert_refused(capsys, folder, [tokens[0], "bad.toml", *tokens[1:]], "bad.toml", sentence)
 
 
-NO_CASES = [
-    ("missing.toml", "cannot be read (No such file or directory)"),
-    ("empty.toml", "is empty; a case file needs at least the table [contact]"),
-    ("binary.toml", "is not text (byte 0 is not UTF-8)"),
-    ("null.toml", "is not valid TOML"),
-    ("folder.toml", "is a directory; give the path of a TOML case file"),
-]
-
-
-@pytest.mark.parametrize("command", ["solve", "curve", "regimes"])
-def test_a_file_that_is_no_case_is_refused(capsys, folder, command):
-    for name, words in NO_CASES:
-        assert_refused(capsys, folder, [command, name], name, words)
-
-
 @pytest.mark.quick
 def test_all_problems_of_a_file_are_told_at_once_each_on_its_line(capsys, folder):
     (folder / "bad.toml").write_text(case_text({"radius": "-1", "alpha": '"x"', "speed": None}))

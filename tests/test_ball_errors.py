@@ -15,7 +15,7 @@ def states(number):
 
 
 def test_full_films_are_as_near_as_they_state(subtests):
-    for groups in states(5):
+    for groups in states(3):
         with subtests.test(groups=groups):
             coarse, fine = sb.solve(groups, rtol=1e-3), sb.solve(groups, rtol=1e-5)
             for name in OWN:

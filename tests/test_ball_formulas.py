@@ -119,20 +119,6 @@ def test_the_correction_carries_the_load_that_the_ring_at_the_edge_takes_back():
     assert math.isclose(load, -(math.pi**3) / 4, rel_tol=1e-8)
 
 
-@pytest.mark.quick
-def test_the_gap_in_the_contact_and_that_at_the_edge_meet():
-    kappa = 1e-6
-    groups = ball(0.0, kappa=kappa)
-    width = (math.pi * kappa / 4) ** (2 / 3)
-    x = 1 - kappa - 30 * width
-    with pytest.warns(OutOfRangeWarning):
-        edge = float(rest.edge_gap(groups, x))
-    assert math.isclose(edge, float(rest.gap(groups, x)), rel_tol=2e-3)
-    with pytest.warns(OutOfRangeWarning):
-        pressure = float(rest.edge_contact_pressure(groups, x))
-    assert math.isclose(pressure, 0.1**-1 * math.exp(-edge / kappa), rel_tol=1e-9)
-
-
 # --- smooth ---
 
 
@@ -143,14 +129,6 @@ def test_the_central_film_is_met_to_the_order_after_the_leakage():
     without = [float(film.central_gap_slow(ball(speed), leakage=False)) / SMOOTH[speed][0] - 1 for speed in speeds[:2]]
     assert abs(order(speeds[:2], without) - 0.2) < 0.05
     assert math.isclose(constants.BALL_FILM_CONSTANT, 0.42480, abs_tol=5e-6)
-
-
-def test_the_film_in_si_has_the_exponents_of_the_trade():
-    R, E, F, eta, U = 9.5e-3, 1.6e6, 1.3, 0.01, 0.02
-    a = (3 * F * R / (4 * E)) ** (1 / 3)
-    speed = 3 * math.pi * eta * U * R**3 / (E * a**4)
-    film_si = float(film.central_gap_slow(ball(speed), leakage=False)) * a**2 / R
-    assert math.isclose(film_si, 1.696 * R * (eta * U / (E * R)) ** 0.6 * (F / (E * R**2)) ** (-2 / 15), rel_tol=3e-4)
 
 
 def test_the_minimum_on_the_middle_line_is_that_of_the_outlet_for_the_film_that_reaches_it():
@@ -181,10 +159,6 @@ def test_the_lift_is_the_integral_over_the_bessel_functions():
 
     assert math.isclose(0.8 * quad(integrand, 0, 60)[0], rigid.LIFT_COEFFICIENT, rel_tol=1e-9)
     assert math.isclose(18 * math.pi * rigid.LIFT_COEFFICIENT / 4, 0.416, abs_tol=5e-4)
-
-
-def test_the_fast_ball_is_met():
-    assert math.isclose(float(rigid.minimum_gap(ball(1e2))), SMOOTH[1e2][1], rel_tol=1e-3)
 
 
 @pytest.mark.quick
@@ -428,12 +402,12 @@ def test_the_error_of_another_formula_of_the_ball_vanishes_with_the_stated_order
 
 def test_the_states_of_the_fitted_laws_are_those_of_the_solver_of_today():
     speed, load, kappa, share, central, J = columns("mixed")
-    for i in range(3, len(speed), 12):
+    for i in range(3, len(speed), 24):
         found = sb.solve(ball(float(speed[i]), float(load[i]), float(kappa[i])), rtol=1e-3)
         assert abs(found.contact_load_share - share[i]) < 1e-3
         assert math.isclose(found.central_gap, central[i], rel_tol=2e-3)
         assert math.isclose(found.J_balanced, J[i], rel_tol=4e-3)
-    for speed, load, kappa, share, _, pcx in columns("both").T[8::16]:
+    for speed, load, kappa, share, _, pcx in columns("both").T[8::32]:
         found = sb.solve(ball(speed, load, kappa), rtol=1e-3)
         assert abs(found.contact_load_share - share) < 1e-3
         assert math.isclose(found.J_pcx, pcx, rel_tol=4e-3)

@@ -2,9 +2,7 @@
 
 import os
 import re
-import subprocess
 import sys
-import types
 from collections import Counter
 from pathlib import Path
 
@@ -100,56 +98,6 @@ def test_its_tables_come_out(load_benchmark, run, monkeypatch, name):
     check(text)
     if name == "peers":
         assert all(f"pip install {peer}" in text for peer in script.PEERS)
-
-
-def test_random_parts_are_drawn_and_judged(load_benchmark, run):
-    check(run(load_benchmark("curve_bound"), "--parts", "--number", "1", "--speeds", "3", "--seed", "7311"))
-
-
-def test_a_sweep_too_small_to_be_timed_says_so(load_benchmark, monkeypatch, tmp_path):
-    script = load_benchmark("sweep_rate")
-
-    def sweep(file, store, workers, on_progress):
-        on_progress(types.SimpleNamespace(done=2))
-        return [1, 2]
-
-    monkeypatch.setattr(script.sb, "sweep", sweep)
-    with pytest.raises(SystemExit, match="2 are too few for 8 processes; give a larger --number"):
-        script.measure(tmp_path / "sweep.toml", tmp_path / "store", 8)
-
-
-@pytest.mark.slow
-def test_instructions_are_counted_for_all_cases(load_benchmark, run, monkeypatch):
-    """Valgrind is played by Python itself, which runs each case and says that a run costs three million."""
-    script = load_benchmark("instructions")
-
-    def valgrind(command, **settings):
-        assert command[:2] == ["valgrind", "--tool=cachegrind"]
-        exec(command[-1], {})
-        runs = int(re.search(r"range\((\d)\)", command[-1])[1])
-        said = f"==7== I   refs:      {1_234_000_000 + 3_000_000 * runs:,}\n"
-        return subprocess.CompletedProcess(command, 0, "", said)
-
-    monkeypatch.setattr(script.shutil, "which", lambda name: f"/usr/bin/{name}")
-    monkeypatch.setattr(script.subprocess, "run", valgrind)
-    [[_, _, *rows]] = check(run(script, "--points", "4"))
-    assert rows == [[name, "3"] for name in script.cases(4)] and len(rows) == 4
-
-
-def test_without_valgrind_it_says_how_to_get_it(load_benchmark, run, monkeypatch):
-    script = load_benchmark("instructions")
-    monkeypatch.setattr(script.shutil, "which", lambda name: None)
-    assert run(script) == "not run: there is no valgrind; apt-get install valgrind\n"
-
-
-def test_without_a_browser_the_explorer_is_not_timed(load_benchmark, run, monkeypatch):
-    script = load_benchmark("explorer_latency")
-    monkeypatch.delenv("CHROMIUM", raising=False)
-    monkeypatch.setattr(script.shutil, "which", lambda name: None)
-    monkeypatch.setitem(sys.modules, "playwright.sync_api", types.SimpleNamespace(sync_playwright=None))
-    assert run(script) == "not run: there is no chromium; apt-get install chromium, or say where it is with CHROMIUM=\n"
-    monkeypatch.setitem(sys.modules, "playwright.sync_api", None)
-    assert run(script) == "not run: pip install 'stribeck[app,browser]'\n"
 
 
 @pytest.mark.browser

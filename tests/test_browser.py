@@ -235,25 +235,6 @@ def test_parts_of_the_model_are_chosen_and_refused_at_their_place(open_page):
     assert contact_of(other) == now
 
 
-def test_dragging_a_slider_follows_the_hand(open_page):
-    page = open_page()
-    box = slider(page, "speed").bounding_box()
-
-    def drag():
-        page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + box["height"] / 2)
-        page.mouse.down()
-        for part in np.linspace(0.5, 0.75, 20):
-            page.mouse.move(box["x"] + part * box["width"], box["y"] + box["height"] / 2)
-        page.mouse.up()
-
-    now = at_rest(page, drag)
-    place = float(slider(page, "speed").input_value())
-    low, high = np.log10([*inputs.FIELDS["line"]["speed"].usual])
-    assert place == pytest.approx(low + 0.75 * (high - low), abs=0.15)
-    assert np.log10(now.contact.speed) == pytest.approx(place, abs=0.01)
-    check_numbers(page, now)
-
-
 def test_a_bad_value_is_marked_with_its_sentence_and_the_picture_stays(open_page):
     page = open_page()
     page.wait_for_function(f"({CHART})('friction').series.length > 0")
@@ -274,13 +255,6 @@ def test_a_bad_value_is_marked_with_its_sentence_and_the_picture_stays(open_page
     check_numbers(page, now)
 
 
-def test_a_unit_is_changed_in_place_and_the_value_stays(open_page):
-    page = open_page()
-    now = at_rest(page, lambda: page.locator("[data-row=viscosity] select").select_option("Pa*s"))
-    assert field(page, "viscosity").input_value() == "0.05"
-    assert now.contact == server.example().contact
-
-
 def test_a_case_is_loaded_and_a_wrong_one_is_refused_in_sentences(open_page, tmp_path):
     page = open_page()
     seal = EXAMPLES / "nitrile_seal.toml"
@@ -297,17 +271,6 @@ def test_a_case_is_loaded_and_a_wrong_one_is_refused_in_sentences(open_page, tmp
     said = page.locator(".q-dialog").inner_text()
     assert "wrong.toml: [contact] viscosity is missing" in said and "viscose" in said
     assert contact_of(page) == now
-
-
-def test_a_file_of_heights_puts_the_contact_on_that_surface(open_page):
-    page = open_page()
-    now = at_rest(page, lambda: page.set_input_files("input[type=file]", EXAMPLES / "cylinder_profile.csv"))
-    assert now.contact.law.name == "persson"
-    assert 6.1e-7 < now.contact.roughness < 6.2e-7 and 0.019 < now.contact.beta < 0.020
-    check_numbers(page, now)
-    page.keyboard.press("Control+z")
-    page.wait_for_function("!location.search.includes('persson')")
-    assert contact_of(page).contact.law is None
 
 
 def test_a_measured_curve_is_mapped_shown_fitted_and_removed(open_page, tmp_path):
@@ -337,13 +300,6 @@ def test_a_measured_curve_is_mapped_shown_fitted_and_removed(open_page, tmp_path
     page.wait_for_function("document.querySelector('.chart-residuals canvas').getBoundingClientRect().height > 60")
     page.locator(".chips .q-chip__icon--remove").click()
     page.wait_for_function(f"!({CHART})('friction').series.some(s => s.name === 'odd.csv')")
-
-
-def test_a_program_is_shown_to_be_copied(open_page):
-    page = open_page()
-    page.get_by_role("button", name="Copy").click()
-    page.get_by_text("As Python ...").click()
-    assert page.locator(".code").inner_text().startswith("import stribeck as sb")
 
 
 def test_what_is_shown_is_downloaded(open_page, tmp_path):
@@ -387,14 +343,6 @@ def test_a_shared_address_opens_as_it_was_left(open_page):
 
     data = [drawn(each) for each in (page, other)]
     assert data[0] == data[1] and len(data[0]) == 2
-
-
-def test_a_wrong_address_is_marked_at_the_field(open_page):
-    page = open_page("?load=-1+N/m&speed=2+mm/s")
-    page.wait_for_selector("[data-row=load].wrong")
-    assert page.locator("[data-row=load]").get_by_role("alert").inner_text() == "load = '-1 N/m' must be positive."
-    check_numbers(page, contact_of(page))
-    assert contact_of(page).contact.speed == 2e-3
 
 
 def test_two_tabs_do_not_disturb_each_other(open_page):
@@ -466,37 +414,6 @@ def test_it_fits_a_phone(open_page):
     now = at_rest(page, lambda: page.touchscreen.tap(box["x"] + 0.7 * box["width"], box["y"] + box["height"] / 2))
     check_numbers(page, now)
     assert now.contact.viscosity > server.example().contact.viscosity
-
-
-def test_the_answer_comes_first_on_a_phone_and_the_rest_is_folded(open_page):
-    page = open_page(unfolded=False, viewport={"width": 390, "height": 844}, is_mobile=True, has_touch=True)
-    page.wait_for_selector(".answer .ways td")
-    parts = (".answer .regime", ".answer dl", ".answer .ways", ".chart-friction")
-    boxes = [page.locator(name).bounding_box() for name in parts]
-    assert boxes == sorted(boxes, key=lambda box: box["y"]) and boxes[2]["y"] + boxes[2]["height"] < 844
-    size = "all => Math.min(...all.map(e => parseFloat(getComputedStyle(e).fontSize)))"
-    assert page.eval_on_selector_all(".answer .regime, .answer dd", size) >= 22
-    shown = [each.get_attribute("data-row") for each in page.locator(".knob").all() if each.is_visible()]
-    assert shown == ["speed", "load", "viscosity", "roughness", "radius", "modulus"]
-    page.goto(f"{page.url}&beta=-1")
-    page.wait_for_selector("[data-row=beta].wrong")
-    assert page.locator("[data-row=beta] .sentence").is_visible()  # what is wrong unfolds
-
-
-def test_words_of_a_data_sheet_are_typed_and_helps_open(open_page):
-    page = open_page()
-    for name, text in (("modulus", "70 Shore A"), ("viscosity", "ISO VG 46 at 60 C"), ("speed", "1500 rpm, 30 mm")):
-        now = at_rest(page, lambda name=name, text=text: (field(page, name).fill(text), field(page, name).press("Enter")))
-    assert now.contact.viscosity == sb.fluids.PRESETS["iso-vg"](grade=46, temperature=60).viscosity
-    assert now.contact.speed == sb.LineContact.INPUTS.quantities["speed"].checked(2.356194490192345)
-    assert "shore_a = 70" in page.locator("[data-row=modulus] .caption").inner_text()
-    check_numbers(page, now)
-    ask = page.get_by_role("button", name="What is: Load", exact=True)
-    ask.click()
-    assert "It may also be typed as" in page.locator("[data-row=load] .help").inner_text()
-    with page.context.expect_page() as opened:
-        page.locator("[data-row=load] .help a").click()
-    opened.value.wait_for_selector("#load:target")
 
 
 def test_changes_are_undone_and_redone(open_page):
@@ -594,18 +511,6 @@ def test_the_point_is_dragged_along_the_curve_and_a_drag_elsewhere_zooms(open_pa
     gap = page.locator(".chart-pressure canvas").bounding_box()
     page.mouse.move(gap["x"] + gap["width"] / 2, gap["y"] + gap["height"] / 2)
     assert re.search(r"total \S+ kPa", page.locator(".chart-pressure .tip").inner_text())
-
-
-def test_nothing_jumps_while_values_change(open_page):
-    page = open_page()
-    settled(page)
-    boxes = """() => [...document.querySelectorAll('.middle .chart, .knob')].map(e => {
-        const box = e.getBoundingClientRect();
-        return [box.x, box.y, box.width, box.height].map(Math.round); })"""
-    before = page.evaluate(boxes)
-    for name, text in (("load", "4"), ("viscosity", "1234"), ("roughness", "0"), ("roughness", "0.123")):
-        at_rest(page, lambda name=name, text=text: (field(page, name).fill(text), field(page, name).press("Enter")))
-        assert page.evaluate(boxes) == before, (name, text)
 
 
 class Firefox:

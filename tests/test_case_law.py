@@ -203,14 +203,6 @@ def test_a_sweep_of_another_law_or_table_is_another_sweep(tmp_path):
     assert len(prints) == 2
 
 
-def test_a_sweep_over_groups_has_a_law_too(tmp_path):
-    text = '[groups]\nlaw = "greenwood-tripp"\nload = 0.3\nroughness = 0.003\n[vary]\nspeed = [0, 1e-5, 1e-2]\n'
-    done = sb.sweep(write(tmp_path, text), tmp_path / "store")
-    gaps = done.to_dataset()["central_gap"].values
-    for speed, gap in zip((0.0, 1e-5, 1e-2), gaps, strict=True):
-        assert gap == pytest.approx(sb.solve(sb.Groups(speed, 0.3, 0.003), law="greenwood-tripp").central_gap, rel=2e-6)
-
-
 def test_what_varies_in_a_sweep_is_not_also_said_by_its_surface(tmp_path):
     text = sweep_text().replace("[vary]", '[vary]\nroughness = ["1 um", "2 um"]')
     with pytest.raises(sb.InputError, match=r"\[vary\] roughness = 1e-06 follows from the table \[surface\]"):

@@ -289,19 +289,12 @@ def test_what_fluid_cavitation_and_solid_solve_counts_as_fine():
 # --- inputs, adhesion, pores, the law apart ---
 
 
-def test_a_slip_of_a_unit_is_said_by_every_command(subtests, capsys, tmp_path_factory):
-    for changes, said in [
-        ({"slide_to_roll": 50.0}, "slide-to-roll ratio 50 (50 % is 0.5)"),
-        ({"modulus": "2.7 GPa"}, "effective modulus 2.7 GPa"),
-    ]:
-        with subtests.test(changes=changes, said=said):
-            tmp_path = tmp_path_factory.mktemp("case")
-            texts = {name: value if isinstance(value, float) else f'"{value}"' for name, value in changes.items()}
-            path = tmp_path / "case.toml"
-            path.write_text(case_text(texts))
-            for command in (["solve"], ["curve", *FEW], ["check"]):
-                answer = call(capsys, *command[:1], path, *command[1:])
-                assert said in " ".join((answer.out + answer.err).split()), command
+def test_a_slip_of_a_unit_is_said_by_every_command(capsys, tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(case_text({"slide_to_roll": "50.0"}))
+    for command, *options in (["solve"], ["curve", *FEW[:-1], "2"], ["check"]):
+        answer = call(capsys, command, path, *options)
+        assert "slide-to-roll ratio 50 (50 % is 0.5)" in " ".join((answer.out + answer.err).split()), command
 
 
 def test_unusual_numbers_beside_groups_are_said_too(capsys):

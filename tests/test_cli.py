@@ -137,16 +137,6 @@ def test_friction_on_the_other_body_and_losses_of_a_body_that_remembers_stand_ap
     assert not re.search("on the cylinder|hysteresis", call(capsys, "solve", PDMS, "-v").out)
 
 
-def test_the_largest_error_printed_counts_that_of_the_friction(capsys, tmp_path):
-    path = tmp_path / "case.toml"
-    path.write_text(f'{PDMS.read_text()}\n[fluid]\nmodel = "carreau"\nrelaxation_time = "1 ms"\nexponent = 0.6\n')
-    solution = sb.solve(sb.load_case(path).contact)
-    friction = max(solution.friction(definition=each).relative_error for each in ("balanced", "published"))
-    assert friction > solution.error_estimate
-    said = f"Largest estimated relative error: {friction:.1e} of the friction, {solution.error_estimate:.1e} of the rest."
-    assert said in call(capsys, "solve", path, "-v").out
-
-
 def test_solve_prints_values_with_units_errors_and_outcome_draws_and_notes_where_there_is_something(capsys, tmp_path):
     answer = call(capsys, "solve", PDMS, "-v", "--plot", tmp_path / "profile.svg")
     solution = sb.solve(sb.load_case(PDMS).contact)
@@ -244,12 +234,6 @@ def test_a_curve_of_groups_takes_the_two_that_stay_fixed_and_finds_a_range_of_sp
                 assert found["points"][name] == pytest.approx([value, value])
     points = strict_json(call(capsys, "curve", "--groups", "0.1", "1e-3", "--points", "3", "--json").out)["points"]
     assert points["value"][0] < 1e-5 and points["fluid_load_share"][0] < 1e-5 and points["value"][-1] > 1e-2
-
-
-def test_a_range_of_loads_of_a_ball_is_one_of_forces(capsys):
-    options = ("--over", "load", "--range", "1 N", "0.002 kN", "--points", "2", "--rtol", "1e-2", "--json")
-    answer = call(capsys, "curve", EXAMPLES / "pdms_ball.toml", *options)
-    assert answer.code == 0 and strict_json(answer.out)["points"]["value"] == pytest.approx([1, 2])
 
 
 def test_where_the_law_is_beyond_its_range_every_output_says_so(capsys, tmp_path):

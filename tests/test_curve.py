@@ -42,64 +42,11 @@ def test_points_lie_exactly_where_they_are_asked_for():
 
 
 @pytest.mark.quick
-def test_every_point_is_the_state_that_a_single_solve_finds(subtests):
-    for over, ends in [
-        ("speed", ("0.3 mm/s", "0.1 m/s")),
-        ("load", ("8 N/m", "150 N/m")),
-        ("roughness", ("0.2 um", "5 um")),
-    ]:
-        with subtests.test(over=over, ends=ends):
-            curve = sb.stribeck_curve(CONTACT, **{over: ends}, points=3)
-            assert curve.over == over
-            for i, value in enumerate(curve.values):
-                alone = sb.solve(CONTACT.replace(**{over: float(value)}), rtol=1e-8)
-                single = alone.friction()
-                assert curve.friction[i] == pytest.approx(single.total, abs=2 * (curve.friction.error[i] + single.error))
-                for name in ("central_gap", "minimum_gap", "flux_gap", "contact_load_share"):
-                    both = curve.rtol + alone.rtol
-                    assert curve.observable(name)[i] == pytest.approx(getattr(alone, name), rel=2 * both, abs=2 * both)
-                assert curve.hersey_number[i] == pytest.approx(alone.hersey_number, rel=1e-12)
-
-
-@pytest.mark.quick
-def test_groups_and_a_contact_of_these_groups_give_the_same_curve():
-    of_contact = sb.stribeck_curve(CONTACT, speed=("1 mm/s", "50 mm/s"), points=3)
-    groups = of_contact.groups
-    of_groups = sb.stribeck_curve(
-        load=float(groups.load[0]), roughness=float(groups.roughness[0]), speed=groups.speed, boundary_friction=0.7, beta=0.06
-    )
-    np.testing.assert_allclose(of_groups.friction, of_contact.friction, rtol=3e-6)
-    np.testing.assert_allclose(of_groups.hersey_number, of_contact.hersey_number, rtol=1e-12)
-
-
-@pytest.mark.quick
-def test_the_parts_of_friction_add_up_and_the_error_covers_them(curve):
-    np.testing.assert_allclose(curve.friction.asperities + curve.friction.fluid, curve.friction, rtol=1e-14)
-    assert (curve.friction.error > 0).all()
-    assert (curve.friction.error < 1e-5 * curve.friction).all()
-    assert curve.error_estimate <= curve.rtol
-
-
-def test_both_abscissas_are_those_of_the_paper(curve):
-    np.testing.assert_allclose(curve.hersey_number, 0.05 * curve.values / 30.0, rtol=1e-12)
-    fast = curve.friction.asperities < 1e-6 * curve.friction
-    assert fast.sum() >= 3
-    # The law combines its two limits and is within 6 % of the truth between them.
-    np.testing.assert_allclose(curve.friction[fast], curve.hydrodynamic_friction[fast], rtol=0.07)
-
-
-@pytest.mark.quick
 def test_a_quasistatic_curve_over_the_load_is_the_dry_friction():
     curve = sb.stribeck_curve(CONTACT.replace(speed=0), load=("5 N/m", "200 N/m"), points=3)
     np.testing.assert_allclose(curve.friction, 0.7, rtol=1e-6)
     assert set(curve.regimes) == {"boundary"}
     assert curve.transitions == ()
-
-
-def test_progress_counts_every_point_once():
-    seen = []
-    sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-4, 1), points=4, on_point=lambda *n: seen.append(n))
-    assert seen == [(1, 4), (2, 4), (3, 4), (4, 4)]
 
 
 # --- the automatic range ---
@@ -155,11 +102,6 @@ def test_the_minimum_does_not_depend_on_the_points_of_the_curve(curve):
         other = sb.stribeck_curve(CONTACT, speed=ends, points=points)
         assert other.minimum.value == pytest.approx(curve.minimum.value, rel=1e-6)
         assert other.minimum.friction == pytest.approx(curve.minimum.friction, rel=1e-7)
-
-
-def test_a_range_without_minimum_has_none():
-    assert sb.stribeck_curve(CONTACT, speed=("0.1 m/s", "1 m/s"), points=4).minimum is None
-    assert sb.stribeck_curve(CONTACT, speed=("0.1 mm/s", "1 mm/s"), points=4).minimum is None
 
 
 @pytest.mark.quick
@@ -231,11 +173,6 @@ def test_notes_say_which_points_they_concern():
     assert f"({len(concerned)} of 6 points, speed 1 µm/s to " in outside
 
 
-def test_each_kind_of_note_is_told_once(curve):
-    far, minimum = curve.notes
-    assert "of 25 points" in far and minimum.startswith("At the minimum of friction")
-
-
 # --- refused ---
 
 
@@ -293,14 +230,6 @@ def test_an_interrupted_curve_keeps_the_points_it_has():
     assert part.values.tolist() == whole.values[-3:].tolist()
     # As many points of an interval as are asked for are one matrix product, which rounds by its shape.
     np.testing.assert_allclose(part.friction, whole.friction[-3:], rtol=1e-14)
-
-
-@pytest.mark.slow
-def test_a_curve_that_rounding_ends_keeps_the_points_before_and_tells_why():
-    curve = sb.stribeck_curve(load=0.1, roughness=1e-6, speed=(1e-8, 1e-3), points=2, rtol=1e-11)
-    assert curve.outcome is sb.Outcome.ROUNDING
-    assert 0 < len(curve) < curve.requested == 2
-    assert curve.values[-1] == 1e-3
 
 
 # --- resources ---

@@ -1,7 +1,6 @@
 """A curve as a function: within its stated errors anywhere, whatever points it was sampled at."""
 
 import math
-import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -81,24 +80,6 @@ def test_numbers_give_numbers_and_arrays_arrays(curve):
         _ = one.film
 
 
-@pytest.mark.quick
-def test_what_a_curve_is_somewhere_fits_a_screen_and_is_equal_after_pickling(curve):
-    one, many = curve.at("1 mm/s"), curve.at(curve.values)
-    for values in (one, many):
-        assert pickle.loads(pickle.dumps(values)) == values
-        assert len(repr(values).splitlines()) < 20
-        assert "central_gap" in values._repr_html_()
-    assert one != curve.at("2 mm/s")
-    assert f"friction: {one.friction:.4g}, error {one.friction.error:.1e}" in repr(one)
-
-
-@pytest.mark.quick
-def test_the_function_does_not_depend_on_the_points():
-    curves = [sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1), points=n) for n in (2, 31)]
-    assert curves[0].states == curves[1].states
-    assert curves[0].at(0.05).friction == pytest.approx(curves[1].at(0.05).friction, rel=1e-7)
-
-
 def test_marks_are_read_off_a_coarse_curve_within_their_errors_and_polished_on_states_by_default(curve):
     coarse = sb.stribeck_curve(CONTACT, points=200, rtol=1e-4)
     read = {name: coarse.landmark(name, coarse.rtol) for name in (mark.name for mark in curve.transitions)}
@@ -107,17 +88,6 @@ def test_marks_are_read_off_a_coarse_curve_within_their_errors_and_polished_on_s
         assert abs(np.log(mark.value / exact.value)) <= mark.error + exact.error < 1e-2
     least_known = max(read, key=lambda name: read[name].error)
     assert coarse.landmark(least_known).error < 0.2 * read[least_known].error
-
-
-def test_landmarks_of_a_coarse_curve_are_as_good_as_those_of_a_fine_one():
-    fine, coarse = (sb.stribeck_curve(load=2e-4, roughness=4e-8, points=3, rtol=rtol) for rtol in (1e-6, 1e-4))
-    assert len(coarse.transitions) == 4
-    for mark in coarse.transitions:
-        exact = fine.landmark(mark.name)
-        assert mark.value == pytest.approx(exact.value, rel=mark.error + exact.error)
-        assert mark.error < 10 * exact.error
-        stated = [each.solution.friction().error for each in (mark, exact)]
-        assert mark.friction == pytest.approx(exact.friction, abs=sum(stated))
 
 
 def test_a_curve_is_sampled_anew_without_a_state(curve):
@@ -158,10 +128,6 @@ def test_values_that_the_curve_does_not_hold_are_refused(subtests, curve):
         with subtests.test(value=value, words=words):
             with pytest.raises(sb.InputError, match=words):
                 curve.at(value)
-
-
-@pytest.mark.quick
-def test_a_solution_is_that_of_one_value(curve):
     with pytest.raises(sb.InputError, match="give one value"):
         curve.solve_at([0.005, 0.006])
 
@@ -244,15 +210,6 @@ def test_a_landmark_is_asked_for_by_a_short_name_and_another_is_refused(curve):
         curve.landmark("half")
 
 
-def test_marks_of_a_coarse_curve_with_a_cavity_at_ambient_pressure_are_states_of_that_cavity():
-    curve = sb.stribeck_curve(
-        load=0.1, roughness=1e-3, speed=(1e-5, 1e-1), points=3, rtol=1e-3, cavitation="reform", cavity_pressure=0.0
-    )
-    found = [mark.solution for mark in curve.transitions] + [curve.solutions[1], curve.solve_at(1e-3)]
-    assert [each.groups.model.cavitation for each in found] == ["reform"] * len(found)
-    assert len(curve.transitions) == 4 and np.isfinite(found[-1].profile(np.array([0.0])).gap).all()
-
-
 def test_a_curve_with_a_cavity_at_ambient_pressure_is_that_of_a_film_that_ends():
     contact = CONTACT.replace(cavitation="reform")
     curve = sb.stribeck_curve(contact, points=5, rtol=1e-4)
@@ -261,7 +218,8 @@ def test_a_curve_with_a_cavity_at_ambient_pressure_is_that_of_a_film_that_ends()
     np.testing.assert_allclose(curve.friction(), ends.friction(), rtol=1e-12)
     speed = float(curve.values[2])
     assert math.isnan(curve.at(speed).reformation_position)
-    assert {found.groups.model.cavitation for found in (curve.solve_at(speed), curve.solutions[2])} == {"reform"}
+    states = [curve.solve_at(speed), curve.solutions[2], *(mark.solution for mark in curve.transitions)]
+    assert len(states) > 3 and {state.groups.model.cavitation for state in states} == {"reform"}
 
 
 def test_a_dataset_of_a_curve_holds_what_is_read_off_it_and_nothing_for_which_each_point_were_solved():

@@ -28,7 +28,7 @@ def results():
         "curve": sb.stribeck_curve(contact, points=5, rtol=1e-4),
         "batch": sb.solve_batch(contact, speed=[1e-4, 1e-2, 1.0]),
         "checks": sb.check(contact),
-        "uncertainty": sb.propagate(contact, {"roughness": 0.2}),
+        "uncertainty": sb.propagate(contact, {"roughness": 0.2}, transitions=False),
         "measurements": data,
         "fit": fit,
         "comparison": sb.compare(

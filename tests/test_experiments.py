@@ -99,21 +99,17 @@ def test_the_law_that_made_the_data_is_preferred():
     assert json.loads(json.dumps(found.to_dict()))["laws"][0]["difference"] == 0
 
 
-def test_a_comparison_and_a_plan_show_themselves_in_a_screen_and_the_criterion_is_that_of_akaike_for_small_samples(found):
+def test_the_criterion_of_a_comparison_is_that_of_akaike_for_small_samples(found):
     s = np.linspace(0.05, 12.0, 60)
     laws = {"exponential": None, "table": sb.contact_laws.TableLaw(s, np.exp(-s) + 0.3 * np.exp(-3 * s))}
     comparison = sb.compare(found.data, TRUE, laws=laws, free=("boundary_friction", "roughness"))
-    plan = sb.next_runs(found, 1, speeds=["0.05 mm/s", "0.2 m/s"], loads=[TRUE.load])
     for each in comparison.candidates:
         n, free = len(each.fit.data), len(each.fit.inputs)
         k, sigma = free + 1, each.fit.noise * math.sqrt((n - free) / n)
         assert each.aicc == pytest.approx(n * math.log(sigma**2) + 2 * k + 2 * k * (k + 1) / (n - k - 1))
     first, second = comparison.candidates
     assert second.difference == pytest.approx(second.aicc - first.aicc) and first.weight + second.weight == pytest.approx(1)
-    for shown, said in ((comparison, f"{second.name}: AICc {second.aicc:.1f}, difference"), (plan, "gain ")):
-        text = repr(shown)
-        assert said in text and len(text.splitlines()) < 25 and len(text) < 2500
-        assert text.startswith(type(shown).__name__) and shown._repr_html_().count("<tr>") >= 2
+    assert f"{second.name}: AICc {second.aicc:.1f}, difference" in repr(comparison)
     assert repr(comparison).splitlines()[0].endswith(comparison.sentence)
 
 

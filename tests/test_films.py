@@ -109,22 +109,6 @@ def test_a_film_that_forms_anew_is_that_of_an_independent_solver(subtests):
             assert solution.contact_load_share == pytest.approx(row["contact_share"], abs=1e-6)
 
 
-def test_a_cavity_closes_where_its_pressure_is_that_of_the_suction_of_the_full_film():
-    groups = sb.Groups(1e-3, 0.1, 0.0)
-    full = sb.solve(groups)
-    lowest = full.fluid_pressure.min()
-    lengths, gaps = [], []
-    for part in (0.6, 0.9):
-        ended = sb.solve(groups, cavitation="reform", cavity_pressure=part * lowest)
-        lengths.append(ended.reformation_position - ended.exit_position)
-        gaps.append(ended.minimum_gap / full.minimum_gap - 1)
-    assert 0 < lengths[1] < lengths[0] < 0.04
-    assert 0 < gaps[1] < gaps[0] < 0.04
-    closed = sb.solve(groups, cavitation="reform", cavity_pressure=1.01 * lowest)
-    assert np.isnan(closed.exit_position)
-    assert closed.minimum_gap == full.minimum_gap
-
-
 @pytest.mark.quick
 def test_the_cavity_of_a_film_that_forms_anew_is_at_its_pressure():
     solution = sb.solve(sb.Groups(1e-2, 0.1, 1e-3), cavitation="reform", cavity_pressure=-0.05)
@@ -319,12 +303,6 @@ def test_the_friction_with_a_cavity_becomes_that_of_a_film_that_ends_as_its_pres
                 assert getattr(anew, name) == pytest.approx(getattr(ending, name), rel=2e-6)
 
 
-def test_the_drag_of_the_fluid_is_linear_in_the_sliding_about_that_of_rolling():
-    drags = [sb.solve(GROUPS, slide_to_roll=ratio).viscous_balanced for ratio in (0.0, 0.01, 0.02)]
-    assert drags[2] - drags[1] == pytest.approx(drags[1] - drags[0], rel=1e-6)
-    assert drags[0] > 0
-
-
 def test_the_central_film_is_that_of_moes_within_two_per_cent(subtests):
     for M, L in [(5, 5), (20, 2.5)]:
         with subtests.test(M=M, L=L):
@@ -373,37 +351,9 @@ def test_the_hysteresis_friction_is_that_of_the_slope_and_within_a_loose_toleran
 
 
 @pytest.mark.quick
-def test_an_elastic_body_has_no_hysteresis_friction():
-    assert sb.solve(GROUPS, rtol=1e-4).hysteresis_friction == 0
-
-
-def test_two_bodies_lie_between_each_alone():
-    layer = sb.solids.Layer(1.0)
-    films = [sb.solve(GROUPS, solid=sb.solids.TwoBodies(layer, None, share)).central_gap for share in (0.0, 0.5, 1.0)]
-    assert films[0] == pytest.approx(sb.solve(GROUPS).central_gap, rel=1e-6)
-    assert films[2] == pytest.approx(sb.solve(GROUPS, solid=layer).central_gap, rel=1e-6)
-    assert films[2] < films[1] < films[0]
-
-
-@pytest.mark.quick
 def test_a_substrate_that_moves_backwards_on_a_body_with_memory_is_refused():
     with pytest.raises(sb.InputError, match="moves against the flow"):
         sb.solve(GROUPS, solid=sb.solids.StandardLinearSolid(0.3, 4.0), slide_to_roll=-3.0)
-
-
-# --- power laws ---
-
-
-def test_films_of_power_laws_grow_with_the_speed_as_the_inlet_says(subtests):
-    for exponent in [0.7]:
-        with subtests.test(exponent=exponent):
-            films = []
-            for speed in (1e-6, 1e-5):
-                groups = sb.Groups(speed, 0.1, 0.0)
-                fluid = sb.fluids.PowerLaw(1e-3 * speed / 1e-6, exponent)  # the same fluid: times are in units of the film
-                films.append(sb.solve(groups, fluid=fluid, cavitation="exit", rtol=1e-5).central_gap)
-            lam = np.log10(10 * 10 ** (exponent - 1))  # of the speed at the viscosity of the film
-            assert np.log10(films[1] / films[0]) / lam == pytest.approx(3 / (2 + 3 * exponent), rel=0.02)
 
 
 # --- a drag that nearly vanishes, as of rolling films on one wall ---

@@ -212,11 +212,6 @@ def test_a_share_below_the_error_of_friction_is_said_to_be_that_at_most():
     assert 1e-7 < share < 1e-3
 
 
-def test_a_curve_with_a_plateau_gives_it(fitted):
-    assert fitted.undetermined == ()
-    assert fitted["boundary_friction"].standard_error < 0.02
-
-
 def test_the_combination_that_the_data_give_is_named():
     found = sb.fit(noisy(1, rows=10), START, free=["boundary_friction", "roughness", "alpha"])
     [weak] = found.undetermined

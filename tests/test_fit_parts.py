@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from command_line import call
+from command_line import call, case_text
 from fit_data import TRUE, measured
 
 import stribeck as sb
@@ -107,34 +107,15 @@ def test_the_films_of_data_that_do_not_reach_them_say_nothing_of_the_fluid():
     assert found["pressure_coefficient"].value == pytest.approx(5e-7)
 
 
-CASE = """
-[contact]
-radius = "10 mm"
-modulus = "2.7 MPa"
-load = "30 N/m"
-viscosity = "50 mPa*s"
-speed = "1 mm/s"
-roughness = "1 um"
-alpha = 2.0
-beta = 0.06
-boundary_friction = 0.7
-
-[fluid]
-pressure_coefficient = "600 1/GPa"
-
-[fit]
-free = ["boundary_friction", "pressure_coefficient"]
-
-[fit.bounds]
-pressure_coefficient = ["10 1/GPa", "1000 1/GPa"]
-
-[fit.curves.second]
-viscosity = "20 mPa*s"
-
-[fit.curves.second.fluid]
-model = "eyring"
-eyring_stress = "1 kPa"
-"""
+CASE = case_text(
+    fluid={"pressure_coefficient": '"600 1/GPa"'},
+    fit={"free": '["boundary_friction", "pressure_coefficient"]'},
+    **{
+        "fit.bounds": {"pressure_coefficient": '["10 1/GPa", "1000 1/GPa"]'},
+        "fit.curves.second": {"viscosity": '"20 mPa*s"'},
+        "fit.curves.second.fluid": {"model": '"eyring"', "eyring_stress": '"1 kPa"'},
+    },
+)
 
 
 def test_a_case_file_names_numbers_of_its_fluid_and_gets_them_back(tmp_path, capsys):

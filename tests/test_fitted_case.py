@@ -18,10 +18,11 @@ SEPARATION = np.linspace(0.05, 12, 60)
 
 PERSSON = NOTHING | {"law": '"persson"'}
 CASES = {
-    "exponential of a surface": (NOTHING, {"surface": SURFACE}),
+    "exponential of a surface": (NOTHING, {"surface": SURFACE}, "roughness"),
     "Persson, Ra": (
         PERSSON | {"ra": '"0.8 um"'},
         {"surface": {key: value for key, value in SURFACE.items() if key != "h_rms"}},
+        "roughness",
     ),
     "Persson, spectrum": (
         PERSSON | {"viscosity": None},
@@ -29,31 +30,45 @@ CASES = {
             "surface": {"spectrum": '"spectrum.csv"'},
             "fluid": {"flow_curve": '"oil.csv"', "model": '"newtonian"'},
         },
+        "alpha",
+        "beta",
     ),
-    "Persson, shape alone": ({"law": '"persson"'}, {"surface": SURFACE | {"shape_only": "true"}}),
-    "Greenwood-Williamson, asperities": (NOTHING | {"law": '"greenwood-williamson"'}, {"asperities": ASPERITIES}),
-    "table": ({"law": '"table"'}, {"table": {"file": '"law.csv"'}}),
+    "Persson, shape alone": ({"law": '"persson"'}, {"surface": SURFACE | {"shape_only": "true"}}, "roughness"),
+    "Greenwood-Williamson, asperities": (
+        NOTHING | {"law": '"greenwood-williamson"'},
+        {"asperities": ASPERITIES},
+        "roughness",
+    ),
+    "table": ({"law": '"table"'}, {"table": {"file": '"law.csv"'}}, "beta"),
+    "data sheet": (
+        {
+            "modulus": None,
+            "shore_a": "45",
+            "viscosity": None,
+            "kinematic_viscosity": '"55 cSt"',
+            "density": '"900 kg/m^3"',
+            "load": None,
+            "force": '"0.6 N +- 5 %"',
+            "width": '"20 mm"',
+        },
+        {},
+        "load",
+        "viscosity",
+    ),
+    "one body": ({"modulus": None, "youngs_modulus": '"2 MPa"', "poisson_ratio": '"0.4 +- 10 %"'}, {}, "modulus"),
+    "two bodies": (
+        {
+            "modulus": None,
+            "youngs_modulus": '"2 MPa +- 10 %"',
+            "poisson_ratio": "0.5",
+            "youngs_modulus_2": '"50 MPa"',
+            "poisson_ratio_2": "0.3",
+        },
+        {},
+        "modulus",
+    ),
 }
-INPUTS = {
-    "data sheet": {
-        "modulus": None,
-        "shore_a": "45",
-        "viscosity": None,
-        "kinematic_viscosity": '"55 cSt"',
-        "density": '"900 kg/m^3"',
-        "load": None,
-        "force": '"0.6 N +- 5 %"',
-        "width": '"20 mm"',
-    },
-    "one body": {"modulus": None, "youngs_modulus": '"2 MPa"', "poisson_ratio": '"0.4 +- 10 %"'},
-    "two bodies": {
-        "modulus": None,
-        "youngs_modulus": '"2 MPa +- 10 %"',
-        "poisson_ratio": "0.5",
-        "youngs_modulus_2": '"50 MPa"',
-        "poisson_ratio_2": "0.3",
-    },
-}
+"""Contact, tables, and what is fitted."""
 
 
 def written(folder, contact, tables):
@@ -87,26 +102,10 @@ def check_round_trip(capsys, folder, contact, tables, free):
         assert math.isclose(getattr(back, each["name"]), each["value"], rel_tol=1e-8)
 
 
-@pytest.mark.parametrize(
-    ("name", "free"),
-    [
-        ("exponential of a surface", ["roughness"]),
-        ("Persson, Ra", ["roughness"]),
-        ("Persson, spectrum", ["alpha", "beta"]),
-        ("Persson, shape alone", ["roughness"]),
-        ("Greenwood-Williamson, asperities", ["roughness"]),
-        ("table", ["beta"]),
-    ],
-)
-def test_a_fitted_case_of_every_law_has_the_fitted_curve(capsys, tmp_path, name, free):
-    check_round_trip(capsys, tmp_path, *CASES[name], free)
-
-
-@pytest.mark.parametrize(
-    ("name", "free"), [("data sheet", ["load", "viscosity"]), ("one body", ["modulus"]), ("two bodies", ["modulus"])]
-)
-def test_a_fitted_case_has_the_fitted_curve_whatever_the_data_sheet_gave(capsys, tmp_path, name, free):
-    check_round_trip(capsys, tmp_path, INPUTS[name], {}, free)
+def test_a_fitted_case_has_the_fitted_curve_whatever_gives_its_law_and_its_inputs(subtests, capsys, tmp_path_factory):
+    for name, (contact, tables, *free) in CASES.items():
+        with subtests.test(name=name):
+            check_round_trip(capsys, tmp_path_factory.mktemp("case"), contact, tables, free)
 
 
 def test_a_case_that_cannot_be_written_is_refused_before_the_fit(capsys, tmp_path):

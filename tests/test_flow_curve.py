@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from command_line import call
+from command_line import call, case_text
 
 import stribeck as sb
 
@@ -72,20 +72,7 @@ def test_what_the_rates_do_not_show_is_said():
     assert any("No law follows" in note for note in scattered.notes)
 
 
-CASE = """
-[contact]
-radius = "10 mm"
-modulus = "2 MPa"
-load = "100 N/m"
-speed = "0.1 m/s"
-roughness = "1 um"
-alpha = 2.0
-beta = 0.06
-boundary_friction = 0.5
-
-[fluid]
-flow_curve = "gum.csv"
-"""
+CASE = case_text({"speed": '"0.1 m/s"', "viscosity": None}, fluid={"flow_curve": '"gum.csv"'})
 
 
 def test_a_file_of_a_rheometer_is_the_fluid_of_a_case(tmp_path, capsys):

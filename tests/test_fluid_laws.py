@@ -8,7 +8,6 @@ import pytest
 from numpy.polynomial import legendre
 from scipy.integrate import quad, solve_bvp
 from scipy.optimize import brentq
-from scipy.special import ndtr
 
 import stribeck as sb
 from stribeck.equations.thinning.column import column
@@ -24,10 +23,9 @@ from stribeck.fluids import (
     Roelands,
     local_flow,
 )
-from stribeck.fluids.effective_medium import PERCOLATION, medium_width
+from stribeck.fluids.effective_medium import PERCOLATION
 from stribeck.fluids.flow_factors import MIN_FLOW_FACTOR, mean_inverse_width, mean_width, nominal_separation
 from stribeck.fluids.laws import FilmUnits
-from stribeck.fluids.local_flow import profile
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.dual import with_slope
@@ -220,19 +218,6 @@ def test_the_local_flow_is_found_for_all_rates_slips_and_fluxes(subtests):
             assert np.abs((i_1 - r_1) / scale).max() < 1e-12
 
 
-@pytest.mark.quick
-def test_a_fluid_that_relaxes_at_once_is_newtonian(subtests):
-    for law, order in [(lambda t: Carreau(t, 0.5), 2), (lambda t: Cross(t, 0.7), 0.7), (lambda t: Eyring(1 / t), 2)]:
-        with subtests.test(law=law, order=order):
-            h, _, m = some_films()
-            newtonian = Newtonian(slide=0.5).gradient(h, None, m)
-            errors = [
-                np.abs(ShearThinning(law(t), slide=0.5).gradient(h, None, m) / newtonian - 1).max() for t in (1e-4, 1e-5)
-            ]
-            assert errors[1] < 3e-3
-            assert np.log10(errors[0] / errors[1]) == pytest.approx(order, abs=0.1)
-
-
 # Pressure and density
 
 
@@ -285,22 +270,6 @@ def test_the_effective_medium_has_the_values_of_an_independent_program(subtests)
             assert factors.pressure(np.array([mean]))[0] == pytest.approx(phi, abs=2e-5)
 
 
-@pytest.mark.quick
-def test_the_width_of_the_medium_solves_its_equation(subtests):
-    for separation in [0.1, 0.9, 3.67, 8.0]:
-        with subtests.test(separation=separation):
-            nodes, weights = np.polynomial.legendre.leggauss(600)
-            widest = separation + 9.0
-            u, share = 0.5 * widest * (nodes + 1), 0.5 * widest * weights
-            share = share * np.exp(-0.5 * (u - separation) ** 2) / np.sqrt(2 * np.pi)
-
-            def excess(e):
-                return share @ ((u**3 - e**3) / (u**3 + e**3)) - ndtr(-separation)
-
-            found = float(medium_width(np.array([separation]))[0])
-            assert found == pytest.approx(brentq(excess, 1e-3, 10.0, xtol=1e-14, rtol=1e-13), rel=1e-9)
-
-
 def test_the_effective_medium_conducts_from_its_threshold_on_and_as_tripp_says_when_wide():
     factors = EffectiveMedium(1.0).scaled(FilmUnits(1, 1, 1, 1, decay_length=1.0))
     closed, open_ = factors.pressure(np.array([0.99 * PERCOLATION, 1.5 * PERCOLATION]))
@@ -309,17 +278,6 @@ def test_the_effective_medium_conducts_from_its_threshold_on_and_as_tripp_says_w
     wide = np.array([10.0, 20.0, 40.0])
     np.testing.assert_allclose((1 - factors.pressure(wide)) * wide**2, 1.5, rtol=0.04)
     assert (1 - factors.pressure(wide[1:2])[0]) * 400 == pytest.approx(1.486, abs=1e-3)
-
-
-@pytest.mark.quick
-def test_shear_flow_factors_change_sign_with_the_rough_surface_and_nearly_meet_where_the_fits_change():
-    units = FilmUnits(1, 1, 1, 1, decay_length=1.0)
-    gap = np.array([0.6, 1.0, 3.0, 4.999999, 5.000001, 9.0])
-    cylinder, both, substrate = (PatirCheng(1.0, 1.0, share).scaled(units).shear(gap) for share in (0.0, 0.5, 1.0))
-    np.testing.assert_allclose(cylinder, -substrate)
-    assert (both == 0).all()
-    assert substrate[3] == pytest.approx(substrate[4], rel=2e-3)
-    assert (substrate > 0).all()
 
 
 def test_where_the_fits_end_flow_goes_on_and_a_wider_gap_carries_more(subtests):
@@ -412,18 +370,3 @@ def test_a_column_slips_and_carries_what_integrals_across_it_say(subtests):
             assert np.abs(rate @ weights - slip).max() <= 3e-7 * largest.max()
             assert (np.hypot(*(rate @ weights - slip)) <= 3e-7 * largest).all()
             assert (np.hypot(*(rate @ (weights * zeta) - flow.carried)) <= 3e-7 * largest).all()
-
-
-@pytest.mark.quick
-def test_along_the_motion_a_column_is_that_of_the_line(subtests):
-    for name in COLUMN_LAWS:
-        with subtests.test(name=name):
-            law = COLUMN_LAWS[name]
-            slope, slip = vectors(law)
-            slope[1] = slip[1] = 0.0
-            flow = column(law, slope, slip)
-            line = profile(law, slip[0], flow.carried[0])
-            size = np.maximum(np.abs(line.g_a), np.abs(line.g_b))
-            assert (np.abs(line.g_b - line.g_a - slope[0]) <= 3e-7 * size).all()
-            assert (np.abs(0.5 * (line.g_a + line.g_b) - flow.mean[0]) <= 1e-7 * size).all()
-            assert np.abs(flow.mean[1]).max() == np.abs(flow.carried[1]).max() == 0.0

@@ -39,9 +39,7 @@ with a range in beta/mu0 that of the atlas over all of it, as on validity.md, bu
 its range, which the speeds of the atlas's scan do not meet."""
 
 LINE = [formula for formula in FORMULAS if formula.geometry == "line"]
-# Those of the ball are judged in test_ball_formulas.py.
-NAMED = pytest.mark.parametrize("formula", LINE, ids=lambda formula: formula.name)
-ORDERED = pytest.mark.parametrize("formula", [each for each in LINE if each.small], ids=lambda formula: formula.name)
+"""Those of the ball are judged in test_ball_formulas.py."""
 
 
 def in_box(formula, groups):
@@ -212,28 +210,30 @@ def test_a_formula_depends_on_the_groups_that_it_names_and_on_no_others(subtests
 # --- the error ---
 
 
-@ORDERED
-def test_the_error_of_a_formula_vanishes_with_the_stated_order(formula):
-    small, states = zip(*sorted(followed(formula).items()), strict=True)
-    for groups, value in zip(states, small, strict=True):
-        assert math.isclose(float(formulas.PARAMETERS[formula.small](groups)), value, rel_tol=1e-9)
-    errors = np.abs([relative_error(formula, groups) for groups in states])
-    assert (np.diff(errors) > 0).all(), errors
-    slope = np.polyfit(np.log(small), np.log(errors), 1)[0]
-    of_a_layer = formula.module in ("edge_layer", "film_layers")
-    assert abs(slope - formula.error_order) < (0.025 if of_a_layer else 0.1), (slope, errors)
-    assert not of_a_layer or errors[0] < 1e-3
+def test_the_error_of_a_formula_vanishes_with_the_stated_order(subtests):
+    for formula in (each for each in LINE if each.small):
+        with subtests.test(formula.name):
+            small, states = zip(*sorted(followed(formula).items()), strict=True)
+            for groups, value in zip(states, small, strict=True):
+                assert math.isclose(float(formulas.PARAMETERS[formula.small](groups)), value, rel_tol=1e-9)
+            errors = np.abs([relative_error(formula, groups) for groups in states])
+            assert (np.diff(errors) > 0).all(), errors
+            slope = np.polyfit(np.log(small), np.log(errors), 1)[0]
+            of_a_layer = formula.module in ("edge_layer", "film_layers")
+            assert abs(slope - formula.error_order) < (0.025 if of_a_layer else 0.1), (slope, errors)
+            assert not of_a_layer or errors[0] < 1e-3
 
 
-@NAMED
-def test_the_error_of_a_formula_in_range_is_at_most_the_stated_one(formula):
-    located = formula.predicts in CURVE_QUANTITIES
-    errors = []
-    for i, groups in enumerate(states(formula)):
-        # A curve for each state where it takes one, with other coefficients each time.
-        every = coefficients(formula)
-        errors += [relative_error(formula, groups, **each) for each in (every[i : i + 1] if located else every)]
-    assert np.abs(errors).max() <= 1.02 * formula.worst, errors
+def test_the_error_of_a_formula_in_range_is_at_most_the_stated_one(subtests):
+    for formula in LINE:
+        with subtests.test(formula.name):
+            located = formula.predicts in CURVE_QUANTITIES
+            errors = []
+            for i, groups in enumerate(states(formula)):
+                # A curve for each state where it takes one, with other coefficients each time.
+                every = coefficients(formula)
+                errors += [relative_error(formula, groups, **each) for each in (every[i : i + 1] if located else every)]
+            assert np.abs(errors).max() <= 1.02 * formula.worst, errors
 
 
 def test_the_error_of_a_friction_law_over_its_range_in_the_coefficients_is_at_most_the_stated_one(subtests):

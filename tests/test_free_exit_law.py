@@ -30,19 +30,6 @@ def test_the_first_order_exceeds_the_second_of_a_full_film_up_to_a_fluid_number(
             assert sb.asymptotics.free_exit.boundary_film_with_free_exit(load).share / full == pytest.approx(equal, rel=1e-4)
 
 
-def test_the_minimum_of_friction_is_lower_and_at_more_speed(subtests):
-    for kappa, speeds, speed, friction in [(1e-4, (1e-5, 1e-4), 0.00725, -0.02661), (1e-2, (5e-3, 0.1), 0.07987, -0.19735)]:
-        with subtests.test(kappa=kappa, speeds=speeds, speed=speed, friction=friction):
-            found = [
-                sb.stribeck_curve(
-                    load=0.1, roughness=0.1 * kappa, speed=speeds, points=5, rtol=1e-4, cavitation=cavitation
-                ).minimum
-                for cavitation in ("none", "exit")
-            ]
-            assert found[1].value / found[0].value - 1 == pytest.approx(speed, abs=2e-4)
-            assert found[1].friction / found[0].friction - 1 == pytest.approx(friction, abs=2e-4)
-
-
 def test_states_approach_the_first_order_as_the_roughness_falls():
     law = sb.asymptotics.free_exit.boundary_film_with_free_exit(0.1)
     excess = []
