@@ -147,7 +147,9 @@ def test_the_curve_is_read_by_fit_as_it_is(tmp_path, capsys):
     assert sb.read_measurements(tmp_path / "curve.csv", sb.load_case(case).fit).inputs == ({"load": 2.0},)
     assert call(capsys, "bench", EXAMPLE, "-o", tmp_path / "curve.csv").code == 2  # kept
     answer = call(capsys, "bench", EXAMPLE, "--json")
-    assert json.loads(answer.out)["friction"] == pytest.approx(found.friction.tolist())
+    said = json.loads(answer.out)
+    assert said["friction"] == pytest.approx(found.friction.tolist())
+    assert said["paths"] == [str(EXAMPLE)] and said["files"] == []
 
 
 def test_a_temperature_gives_the_viscosity_of_an_oil(tmp_path):

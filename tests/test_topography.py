@@ -8,7 +8,8 @@ import pytest
 from topography_files import write_gwy, write_sdf, write_x3p
 
 import stribeck as sb
-from stribeck.surfaces import SelfAffine, Topography, read_topography, synthetic_topography
+from stribeck.explorer.uploads import read_scan
+from stribeck.surfaces import SelfAffine, Topography, analyse, read_topography, synthetic_topography
 from stribeck.surfaces import files as scan_files
 
 
@@ -203,6 +204,42 @@ def test_an_uneven_line_is_interpolated_and_says_so(tmp_path):
     assert line.resolution == pytest.approx(8 * line.spacing[0])
 
 
+def test_an_uneven_line_may_miss_as_much_as_a_map(tmp_path):
+    x, rng = np.cumsum(np.random.default_rng(86).uniform(0.8, 1.2, 200)), np.random.default_rng(87)
+    for missing, refused in ((20, False), (21, True)):
+        lost = set(rng.choice(200, missing, replace=False).tolist())
+        rows = [f"{a};{'' if i in lost else math.sin(a / 20)}" for i, a in enumerate(x)]
+        (tmp_path / "line.csv").write_text("\n".join(["x (um);z (um)", *rows]))
+        if refused:
+            with pytest.raises(
+                sb.InputError, match=r"^line\.csv: 10 % of the points are missing, more than 10 %; crop the scan"
+            ):
+                read_topography(tmp_path / "line.csv")
+        else:
+            assert "uneven" in read_topography(tmp_path / "line.csv").notes[0]
+
+
+def test_what_is_left_out_below_the_heights_is_said(subtests, tmp_path):
+    """A footer, a mean or another table may be part of the scan: all faces say that it was not read."""
+    heights = synthetic_topography(SelfAffine(1e-6, 2e4, 3e6, 0.8, 1e5), (64, 64), 1e-6, 5).heights
+    matrix = "\n".join(" ".join(f"{v * 1e9:.4f}" for v in row) for row in heights)
+    points = "\n".join(["x (um);y (um);z (nm)", *(f"{x:g};{y:g};{z * 1e9:.4f}" for x, y, z in grid_rows(heights, 1))])
+    for body, options in ((matrix, {"unit": "nm", "spacing": "1 um"}), (points, {})):
+        last = body.count("\n") + 1
+        for footer in ("end of data", "mean\n5", "Sa;Sq\n1;2\n3;4", *(["5"] if body is points else [])):
+            with subtests.test(first=body[:8], footer=footer):
+                path = tmp_path / "scan.txt"
+                path.write_text(f"{body}\n{footer}\n# a comment is none\n")
+                count = footer.count("\n") + 1
+                numbers = ", ".join(str(last + k + 1) for k in range(count))
+                said = f"{count} row{'s' * (count > 1)} below the numbers left out: {numbers}."
+                read = read_topography(path, **options)
+                assert read.heights.size == heights.size and read.notes == (said,)
+    surface = analyse(read)
+    assert said in surface.notes and said in surface.to_dict()["notes"] and said in str(surface)
+    assert said in read_scan("scan.txt", path.read_bytes()).report
+
+
 TEXTS = {
     "no unit": ("1,2\n2,3.5\n3,4\n", {}, "does not declare the unit of its heights; add --unit um"),
     "contradiction": (
@@ -229,7 +266,7 @@ TEXTS = {
         {"unit": "um"},
         "most of the grid empty",
     ),
-    "hardly a height": ("0.00;1\n1.00;---\n3.00;---\n4.00;---\n", {"unit": "um"}, "fewer than two points have a height"),
+    "hardly a height": ("0.00;1\n1.00;---\n3.00;---\n4.00;---\n", {"unit": "um"}, "75 % of the points are missing"),
     "two spacings of a line": (
         "1\n2\n3\n",
         {"unit": "um", "spacing": "1 um x 2 um"},

@@ -119,7 +119,7 @@ class BenchCurve(Exported, Told, ByValue):
     def to_dict(self) -> dict[str, Any]:
         """Return points, notes and inputs, ready for JSON."""
         columns = {name: getattr(self, name) for name in (*POINTS, "error")}
-        of = {"files": list(self.paths), "curves": list(self.curves), "inputs": list(self.inputs)}
+        of = {"paths": list(self.paths), "curves": list(self.curves), "inputs": list(self.inputs)}
         return of | {"curve": [self.curves[k] for k in self.curve]} | columns | {"notes": list(self.notes)}
 
     def _labelled(self) -> Labelled:

@@ -12,7 +12,7 @@ from cyclopts import Parameter
 
 import stribeck as sb
 from stribeck.cli.arguments import OUTPUTS, Names, Outputs, Quantities, Quantity, Verbose, Whole
-from stribeck.cli.exits import EXIT_BAD_INPUT, EXIT_FAILED, answer, complain
+from stribeck.cli.exits import EXIT_FAILED, answer, complain
 from stribeck.cli.progress import interruptible
 from stribeck.files.writing import check_writable
 from stribeck.quantities.formats import format_percent
@@ -259,9 +259,6 @@ def bench_command(
             track_radius=track_radius,
             on_file=lambda n, m: progress(n, m, "files"),
         )
-    written, problems = outputs.write(
-        found, others={} if out is None else {out: partial(found.to_csv, out, force=outputs.force)}
-    )
 
     def lines() -> list[str]:
         from stribeck.quantities.results import table_lines
@@ -272,11 +269,8 @@ def bench_command(
         taken = [f"Read: {each}." for each in dict.fromkeys(found.taken)] if verbose else []
         return [card.headline, *table_lines(card.table, card.right), *(f"Note: {note}" for note in notes), *more, *taken]
 
-    def content() -> dict[str, Any]:
-        return found.to_dict() | {"written": written}
-
-    answer(outputs.json, content, lines, written=written)
-    return complain("\n".join(problems), EXIT_BAD_INPUT if problems else 0)
+    curve = {} if out is None else {out: partial(found.to_csv, out, force=outputs.force)}
+    return outputs.finish(found, lines, others=curve)
 
 
 def experiment_command(

@@ -75,8 +75,8 @@ def _read(
     if filled_up:
         name, lines, others_of_book = _sheet(path, sheet, knows)
         if others_of_book:
-            left_out = ", ".join(map(show, others_of_book))
-            notes = (f"Sheet {show(name)} read, not {left_out}; sheet = ... in [fit] chooses another.",)
+            unread = ", ".join(map(show, others_of_book))
+            notes = (f"Sheet {show(name)} read, not {unread}; sheet = ... in [fit] chooses another.",)
             path = Path(f"{path} (sheet {show(name)})")
     else:
         lines = _lines_of_text(path, sheet, numbers_in, largest)
@@ -95,21 +95,30 @@ def _read(
             f"{path}: row {number} holds one column, {show(next(filter(None, header), ''))}; "
             f"separate the columns by semicolons, tabs or commas{elsewhere}."
         )
-    rows, numbers, steps, text = _body(path, lines, heading, same, others, filled_up, elsewhere)
+    rows, numbers, steps = _body(path, lines, heading, same, others, filled_up, elsewhere)
     if not rows:
         raise InputError(f"{path} has a header in row {number} and no rows of numbers below it{elsewhere}.")
-    tables = [each for each in others if each.rows > 1]
+    tables = [] if bare else [each for each in others if each.rows > 1]
     inside = {i for each in tables for i in range(each.first, each.end)}
     skipped = sum(not line.comment and i not in inside for i, line in enumerate(lines[: heading.at]))
-    if skipped:
+    if skipped and not bare:
         notes += (f"{skipped} row{'s' * (skipped > 1)} of other text above the header skipped.",)
     for other in tables:
         at = lines[other.at].number
         notes += (
             f"A table of {other.rows} rows under another header, in row {at}, left out; header_row = {at} in [fit] reads it.",
         )
-    if text:
-        notes += (f"{len(text)} row{'s' * (len(text) > 1)} of other text between the numbers left out: {rows_listed(text)}.",)
+    inside.update(i for each in same for i in range(each.first, each.below))
+    taken = set(numbers)
+    left_out = [
+        line.number
+        for i, line in enumerate(lines[heading.below :], heading.below)
+        if not (line.comment or line.number in taken or i in inside)
+    ]
+    between, below = ([each for each in left_out if (each < numbers[-1]) == inner] for inner in (True, False))
+    for text, where in ((between, "of other text between"), (below, "below")):
+        if text:
+            notes += (f"{len(text)} row{'s' * (len(text) > 1)} {where} the numbers left out: {rows_listed(text)}.",)
     units = heading.units
     written = tuple(dict.fromkeys(filter(None, header)))
     if len(set(steps)) > 1 and not bare:
@@ -227,12 +236,12 @@ def _body(
     others: list[Heading],
     filled_up: bool,
     elsewhere: str,
-) -> tuple[list[tuple[str, ...]], list[int], list[int], list[int]]:
-    """Return the rows below a header, number and step of each, and rows of text; the header may come again above each step."""
+) -> tuple[list[tuple[str, ...]], list[int], list[int]]:
+    """Return the rows below a header, with number and step of each; the header may come again above each step."""
     again = {at: each for each in same if not each.is_bare for at in (each.first, each.at)}
     apart = {each.first for each in others}
     width, wide = len(heading.names), sum(map(bool, heading.names)) > 2
-    rows, numbers, steps, text = list[tuple[str, ...]](), list[int](), list[int](), list[int]()
+    rows, numbers, steps = list[tuple[str, ...]](), list[int](), list[int]()
     pending: list[tuple[Line, list[str], int]] = []
 
     def settle(*, header_follows: bool) -> None:
@@ -240,7 +249,6 @@ def _body(
         for line, cells, count in pending:
             if not header_follows and len(cells) != width and max(line.numbers, count) > wide:
                 raise InputError(_ragged(path, line, cells, heading, elsewhere))
-            text.append(line.number)
         pending.clear()
 
     step, i, skipping = 1, heading.below, False
@@ -257,8 +265,8 @@ def _body(
         cells = heading.row(line.text, path, line.number, filled_up)
         count = sum(map(has_number, cells))
         if count == 0 and not line.numeric and (len(cells) != width or sum(map(bool, cells)) < 2):
-            text.append(line.number)
-        elif len(cells) != width or (len(same) > 1 and count < 2):
+            continue  # text
+        if len(cells) != width or (len(same) > 1 and count < 2):
             pending.append((line, cells, count))
         else:
             settle(header_follows=False)
@@ -266,7 +274,7 @@ def _body(
             numbers.append(line.number)
             steps.append(step)
     settle(header_follows=False)
-    return rows, numbers, steps, [each for each in text if numbers and each < numbers[-1]]
+    return rows, numbers, steps
 
 
 def _ragged(path: Path, line: Line, cells: list[str], heading: Heading, elsewhere: str) -> str:

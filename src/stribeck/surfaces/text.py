@@ -20,7 +20,7 @@ from stribeck.files.cells import NUMBER_WITH_POINT, is_missing
 from stribeck.files.table_reading import read_numbers
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.text_header import Header, header_of, unit_of
-from stribeck.surfaces.topography import MIN_POINTS, Topography
+from stribeck.surfaces.topography import MIN_POINTS, Topography, check_missing
 
 __all__ = ["TEXT_ENDINGS", "Spacing", "read_text", "spacing_of"]
 
@@ -211,9 +211,8 @@ def _line(path: Path, x: Array, z: Array, table: _Table, rounding: float) -> Top
     step, off = _even_grid(x, rounding)
     if off <= MAX_GRID_DEVIATION * step:
         return Topography(z, (step,), source=path.name, notes=tuple(notes))
+    check_missing(z, path.name)
     widest, good = float(steps.max()), np.isfinite(z)
-    if good.sum() < 2:
-        raise InputError(f"{path}: fewer than two points have a height.")
     count = int(round((x[-1] - x[0]) / widest)) + 1
     even = np.linspace(x[0], x[-1], count)
     notes.append(f"Positions are uneven; heights were interpolated to the widest step, {widest:.3g} m.")
@@ -296,7 +295,7 @@ def _table(path: Path) -> _Table:
                 "between columns."
             )
     comma = found.separator != "comma" and any("," in cell for row in cells for cell in row)
-    names, notes = list(found.header), [note for note in found.notes if "between the numbers" in note]
+    names, notes = list(found.header), list(found.notes)
     if found.units_row:
         names = [f"{name} ({unit})" if unit else name for name, unit in zip(names, found.units_row, strict=True)]
     # Columns without a height hold nothing, but in a map they may be points that were missed.

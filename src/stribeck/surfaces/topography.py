@@ -74,12 +74,7 @@ class Topography:
                 f"{kind} needs {MIN_POINTS[z.ndim]} or more along each side."
             )
         z[~np.isfinite(z)] = np.nan
-        share = float(np.isnan(z).mean())
-        if share > MAX_MISSING_SHARE:
-            raise InputError(
-                f"{where}{100 * share:.0f} % of the points are missing, more than {100 * MAX_MISSING_SHARE:.0f} %; "
-                "crop the scan to the measured area."
-            )
+        check_missing(z, self.source)
         if not np.nanmax(z) > np.nanmin(z):
             raise InputError(f"{where}all heights are the same; there is no roughness to evaluate.")
         z.setflags(write=False)
@@ -197,6 +192,16 @@ def synthetic_topography(
     if len(points) == 1:
         return Topography(cut[:, 0], (step,), source="synthetic")
     return Topography(cut, (step, step), source="synthetic")
+
+
+def check_missing(heights: Array, source: str) -> None:
+    """Refuse heights of which so many are missing that to fill them would make a surface up."""
+    share = float(np.isnan(heights).mean())
+    if share > MAX_MISSING_SHARE:
+        raise InputError(
+            f"{source + ': ' if source else ''}{100 * share:.0f} % of the points are missing, more than "
+            f"{100 * MAX_MISSING_SHARE:.0f} %; crop the scan to the measured area."
+        )
 
 
 def _count(flags: Flags) -> str:
