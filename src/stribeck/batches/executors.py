@@ -20,8 +20,7 @@ from multiprocessing.connection import wait
 from typing import Any, Protocol
 
 from stribeck._types import Flags
-from stribeck.batches.order import chains_of
-from stribeck.batches.states import Chain, Ended, States
+from stribeck.batches.states import Chain, Ended, States, chains_of
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError
 

@@ -1,8 +1,8 @@
-"""States to solve, how the solve of each ended, and the solving of a chain of them, each from those before it."""
+"""States to solve, how the solve of each ended, and chains of them, each state from those before it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -95,3 +95,26 @@ def _solved(neighbours: Neighbours, groups: Groups, contact: Contact | None) -> 
         raise
     except Exception as problem:  # a fault of the program must not cost the other states of a long run
         return Ended(Outcome.PATH_LOST, None, f"{describe(groups)}: {type(problem).__name__}: {problem}", problem)
+
+
+MAX_CHAIN = 40  # States of a chain: a cold start costs as much as ten that follow, and a lost worker loses one chain
+
+
+def chains_of(groups: Array) -> Iterator[Indices]:
+    """Yield the chains in which states are solved; resting and smooth states have chains of their own."""
+    speed, load, roughness = groups.T
+    kinds = 2 * (speed == 0) + (roughness == 0)
+    places = np.log(np.stack([np.where(speed > 0, speed, 1.0), load, np.where(roughness > 0, roughness / load, 1.0)], axis=1))
+    for kind in np.unique(kinds):
+        yield from _halved(places, np.flatnonzero(kinds == kind))
+
+
+def _halved(places: Array, states: Indices) -> Iterator[Indices]:
+    """Yield states in order of the number that spreads them most, halved there until they are few."""
+    widest = np.argmax(np.ptp(places[states], axis=0))
+    ordered = states[np.argsort(-places[states, widest], kind="stable")]
+    if len(ordered) <= MAX_CHAIN:
+        yield ordered
+        return
+    for half in np.array_split(ordered, 2):
+        yield from _halved(places, half)

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from stribeck._types import Array, Flags, Indices
-from stribeck.bench.passes import Pass, Series
+from stribeck.bench.passes import Pass
+from stribeck.bench.raw import Raw
 from stribeck.fits.table.correlated import FEWEST
 from stribeck.fits.table.repeats import CLEAR, SAME_SPEED, Row, counted, run_in
 from stribeck.quantities.formats import format_error, format_si
@@ -34,28 +35,17 @@ class Point:
     temperature: float  # [degC]; NaN where it was not measured
 
 
-@dataclass(frozen=True)
-class _Row:
-    """A pass with the file and the curve it belongs to."""
-
-    file: int
-    curve: int
-    each: Pass
-
-
-def run_in_of(series: Sequence[Series], curve_of: Sequence[Sequence[int]], names: Sequence[str]) -> list[tuple[int, int]]:
-    """Return file and number of each pass of a first run that differs from the later ones."""
+def run_in_of(passes: Sequence[Pass], names: Sequence[str]) -> list[int]:
+    """Return the number of each pass of a first run that differs from the later ones."""
     rows: list[Row] = []
     runs: list[str] = []
-    places: list[tuple[int, int]] = []
-    files_of = {curve: {f for f, of in enumerate(curve_of) if curve in of} for of in curve_of for curve in of}
-    for f, one in enumerate(series):
-        for k, each in enumerate(one.passes):
-            curve = curve_of[f][each.curve]
-            if each.mean > 0:
-                rows.append((f"{names[curve]} {each.direction}", len(places), each.speed, each.mean, 1.0, {}))
-                runs.append(str(f) if len(files_of[curve]) > 1 else "")
-                places.append((f, k))
+    places: list[int] = []
+    for k, each in enumerate(passes):
+        if each.mean > 0:
+            rows.append((f"{names[each.curve]} {each.direction}", len(places), each.speed, each.mean, 1.0, {}))
+            several = len({other.file for other in passes if other.curve == each.curve}) > 1
+            runs.append(str(each.file) if several else "")
+            places.append(k)
     single = [i for i, run in enumerate(runs) if not run]
     if single:
         for i, run in zip(single, counted([rows[i] for i in single], [str(i) for i in single]), strict=True):
@@ -64,29 +54,21 @@ def run_in_of(series: Sequence[Series], curve_of: Sequence[Sequence[int]], names
     return [places[i] for i in sorted(marked)]
 
 
-def points_of(
-    series: Sequence[Series], curve_of: Sequence[Sequence[int]], left_out: set[tuple[int, int]], paths: Sequence[str]
-) -> tuple[list[Point], list[str]]:
+def points_of(passes: Sequence[Pass], raw: Sequence[Raw], paths: Sequence[str]) -> tuple[list[Point], list[str]]:
     """Return the points of all curves, and what is to be said of force zeros and of the scatter of passes."""
-    rows = [
-        _Row(f, curve_of[f][each.curve], each)
-        for f, one in enumerate(series)
-        for k, each in enumerate(one.passes)
-        if (f, k) not in left_out
-    ]
-    level = _levels(rows)
-    means = np.array([row.each.mean for row in rows])
-    errors = np.array([row.each.error for row in rows])
+    level = _levels(passes)
+    means = np.array([each.mean for each in passes])
+    errors = np.array([each.error for each in passes])
     usable = errors > 0
     errors = np.where(usable, errors, np.median(errors[usable]) if usable.any() else 1.0)
     base = np.equal.outer(level, np.arange(level.max() + 1)).astype(float)
-    shift, said, extra = _force_zeros(series, rows, level, base, means, errors, paths)
+    shift, said, extra = _force_zeros(raw, passes, level, base, means, errors, paths)
     design = np.hstack([base, extra])
     covariance = _inverse(design, errors)
     friction = covariance @ (design.T @ (means / errors**2))
     residuals = (means - design @ friction) / errors
     points, widened = [], list[float]()
-    curves = np.array([row.curve for row in rows])
+    curves = np.array([each.curve for each in passes])
     for curve in range(max(curves) + 1):
         mine = curves == curve
         if not mine.any():
@@ -94,15 +76,15 @@ def points_of(
         levels = np.unique(level[mine])
         freedom = int(mine.sum()) - len(levels) - extra.shape[1] * (curve == curves[0])
         scale = math.sqrt(float(residuals[mine] @ residuals[mine]) / freedom) if freedom >= FEWEST - 1 else 0.0
-        own = [row.each for row, one in zip(rows, mine, strict=True) if one]
+        own = [each for each, one in zip(passes, mine, strict=True) if one]
         within = sum(each.independent - 1 for each in own) if any(np.ptp(each.values) for each in own) else math.inf
         apart = scale > 1 and _chance_of(scale**2, freedom, within) < UNLIKELY
         factor, quantile = (scale, _student(freedom)) if apart else (1.0, _student(within))
         widened += [scale] * apart
         for k in levels:
-            of = [row for row, at in zip(rows, level, strict=True) if at == k]
+            of = [each for each, at in zip(passes, level, strict=True) if at == k]
             error = math.sqrt(float(covariance[k, k])) * factor if usable[level == k].any() else math.nan
-            points.append(_point(curve, of, series, float(friction[k]), quantile * error))
+            points.append(_point(curve, of, raw, float(friction[k]), quantile * error))
     if widened:
         advice = " Files of different fluids need names: --name '{fluid}' (in Python name=)." if len(paths) > 1 else ""
         said.append(
@@ -112,16 +94,17 @@ def points_of(
     return points, said
 
 
-def _point(curve: int, of: Sequence[_Row], series: Sequence[Series], friction: float, half_width: float) -> Point:
+def _point(curve: int, of: Sequence[Pass], raw: Sequence[Raw], friction: float, half_width: float) -> Point:
     """Return the point of passes at one speed."""
-    weights = np.array([len(row.each.rows) for row in of], float)
-    speed = math.exp(float(np.average([math.log(row.each.speed) for row in of], weights=weights)))
-    ways = {way: [row.each for row in of if row.each.direction == way] for way in (1, -1)}
+    weights = np.array([len(each.rows) for each in of], float)
+    speed = math.exp(float(np.average([math.log(each.speed) for each in of], weights=weights)))
+    ways = {way: [each for each in of if each.direction == way] for way in (1, -1)}
     difference = error = math.nan
     if ways[1] and ways[-1]:
         difference = float(np.mean([each.mean for each in ways[1]]) - np.mean([each.mean for each in ways[-1]]))
         error = math.sqrt(sum(sum(each.error**2 for each in way) / len(way) ** 2 for way in ways.values()))
-    warm = [series[row.file].raw.temperature[row.each.rows] for row in of if series[row.file].raw.temperature is not None]  # type: ignore[index]
+    measured = [(raw[each.file].temperature, each.rows) for each in of]
+    warm = [temperature[rows] for temperature, rows in measured if temperature is not None]
     known = np.concatenate(warm) if warm else np.array([])
     known = known[np.isfinite(known)]
     return Point(
@@ -130,29 +113,29 @@ def _point(curve: int, of: Sequence[_Row], series: Sequence[Series], friction: f
         friction=friction,
         half_width=half_width,
         rows=int(weights.sum()),
-        independent=float(sum(row.each.independent for row in of)),
+        independent=float(sum(each.independent for each in of)),
         difference=difference,
         difference_error=error,
         temperature=float(known.mean()) if len(known) else math.nan,
     )
 
 
-def _levels(rows: Sequence[_Row]) -> Indices:
+def _levels(passes: Sequence[Pass]) -> Indices:
     """Return the number of the speed of each pass; passes of a curve within one per cent have the same."""
-    order = sorted(range(len(rows)), key=lambda i: (rows[i].curve, rows[i].each.speed))
-    found = np.zeros(len(rows), dtype=int)
+    order = sorted(range(len(passes)), key=lambda i: (passes[i].curve, passes[i].speed))
+    found = np.zeros(len(passes), dtype=int)
     number, first = -1, None
     for i in order:
-        row = rows[i]
-        if first is None or row.curve != first.curve or row.each.speed > (1 + SAME_SPEED) * first.each.speed:
-            number, first = number + 1, row
+        each = passes[i]
+        if first is None or each.curve != first.curve or each.speed > (1 + SAME_SPEED) * first.speed:
+            number, first = number + 1, each
         found[i] = number
     return found
 
 
 def _force_zeros(
-    series: Sequence[Series],
-    rows: Sequence[_Row],
+    raw: Sequence[Raw],
+    passes: Sequence[Pass],
     level: Indices,
     base: Array,
     means: Array,
@@ -160,13 +143,13 @@ def _force_zeros(
     paths: Sequence[str],
 ) -> tuple[Array, list[str], Array]:
     """Return the columns of force zeros, drifts and misalignment that the passes show, with a sentence on each."""
-    ways = np.array([row.each.direction for row in rows], float)
-    files = np.array([row.file for row in rows])
-    loads = np.array([_load(series[row.file], row.each) for row in rows])
-    times = np.array([row.each.time for row in rows])
+    ways = np.array([each.direction for each in passes], float)
+    files = np.array([each.file for each in passes])
+    loads = np.array([_load(raw[each.file], each) for each in passes])
+    times = np.array([each.time for each in passes])
     both = [bool({1, -1} <= set(ways[level == k].tolist())) for k in range(base.shape[1])]
     said: list[str] = []
-    extra = np.empty((len(rows), 0))
+    extra = np.empty((len(passes), 0))
     for file in np.unique(files):
         mine = files == file
         paired = {k for k in np.unique(level[mine]) if both[k] and {1, -1} <= set(ways[mine & (level == k)].tolist())}
@@ -233,9 +216,9 @@ def _zero_of(
     return taken, f"Both directions: {', '.join(parts)}{several}; taken off."
 
 
-def _load(one: Series, each: Pass) -> float:
+def _load(raw: Raw, each: Pass) -> float:
     """Return the mean load of a pass [N], NaN where the file has none."""
-    return math.nan if one.raw.load is None else float(np.nanmean(one.raw.load[each.rows]))
+    return math.nan if raw.load is None else float(np.nanmean(raw.load[each.rows]))
 
 
 def _inverse(design: Array, errors: Array) -> Array:

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
 
-from stribeck.bench.passes import RUN_IN, Series, passes_of
+from stribeck.bench.passes import RUN_IN, Pass, Series, directions, passes_of
 from stribeck.bench.points import Point, points_of, run_in_of
 from stribeck.bench.raw import Raw, read_raw
 from stribeck.bench.result import BenchCurve
-from stribeck.bench.segments import directions
 from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import FitSettings, with_bench_keys
 from stribeck.cases.reading import load_rig
@@ -27,23 +26,6 @@ from stribeck.quantities.units import InputError, checked_kind
 __all__ = ["read"]
 
 OnFile = Callable[[int, int], Any]  # Called with the number of files read and of all
-
-
-@dataclass
-class _Curves:
-    """The curves that files belong to."""
-
-    names: list[str] = field(default_factory=list)
-    inputs: list[dict[str, float]] = field(default_factory=list)
-
-    def number(self, name: str, inputs: dict[str, float]) -> int:
-        """Return the number of the curve of a name and inputs, a new one if there is none yet."""
-        for k, known in enumerate(zip(self.names, self.inputs, strict=True)):
-            if known == (name, inputs):
-                return k
-        self.names.append(name)
-        self.inputs.append(inputs)
-        return len(self.names) - 1
 
 
 @answers_typos
@@ -132,17 +114,20 @@ def read(
             raise InputError(_of_bench(str(problem))) from None
         if on_file is not None:
             on_file(i, len(paths))
-    curves = _Curves()
-    curve_of = [
-        [curves.number(*_curve(path.name, one.raw, label, inputs, settings)) for label, inputs in one.raw.curves]
-        for path, one in zip(paths, series, strict=True)
-    ]
-    labels = _labels(curves)
+    curves: list[tuple[str, dict[str, float]]] = []
+    passes: list[Pass] = []
+    for f, (path, one) in enumerate(zip(paths, series, strict=True)):
+        own = [_curve(path.name, one.raw, label, inputs, settings) for label, inputs in one.raw.curves]
+        for each in own:
+            if each not in curves:
+                curves.append(each)
+        passes += [replace(each, file=f, curve=curves.index(own[each.curve])) for each in one.passes]
+    labels, inputs_of = _labels(curves), tuple(inputs for _, inputs in curves)
     texts = [path.name for path in paths]
-    out = run_in_of(series, curve_of, labels) if settings.run_in == "leave" else []
-    points, said = points_of(series, curve_of, set(out), texts)
-    for f, k in out:
-        series[f].status[series[f].passes[k].rows] = RUN_IN
+    out = [passes[i] for i in run_in_of(passes, labels)] if settings.run_in == "leave" else []
+    points, said = points_of([each for each in passes if each not in out], [one.raw for one in series], texts)
+    for gone in out:
+        series[gone.file].status[gone.rows] = RUN_IN
     liquid = _liquid(settings)
     notes = [
         _of_bench(f"{text}: {note}" if len(texts) > 1 else note)
@@ -150,9 +135,9 @@ def read(
         for note in (*one.raw.notes, *one.notes)
     ]
     notes += [
-        f"Left out as run-in: {texts[f]}, {format_si(series[f].passes[k].speed, 'speed')}, which differs from later passes "
+        f"Left out as run-in: {texts[each.file]}, {format_si(each.speed, 'speed')}, which differs from later passes "
         f'(run_in = "keep" in [bench] keeps it).'
-        for f, k in out
+        for each in out
     ]
     of_points: dict[str, Any] = {
         each.name: np.array([getattr(point, each.name) for point in points]) for each in fields(Point)
@@ -160,12 +145,12 @@ def read(
     return BenchCurve(
         paths=tuple(map(str, paths)),
         curves=labels,
-        inputs=tuple(curves.inputs),
+        inputs=inputs_of,
         **of_points,
-        viscosity=np.array([_viscosity(point, curves.inputs[point.curve], liquid) for point in points]),
+        viscosity=np.array([_viscosity(point, inputs_of[point.curve], liquid) for point in points]),
         notes=(*notes, *said, *_on_errors(points), *_on_viscosity(points, liquid)),
         taken=tuple(one.raw.taken for one in series),
-        rolls=settings.rolls or any("slide_to_roll" in each for each in curves.inputs),
+        rolls=settings.rolls or any("slide_to_roll" in each for each in inputs_of),
         file=np.concatenate([np.full(len(one.status), f) for f, one in enumerate(series)]),
         row=np.concatenate([one.raw.numbers for one in series]),
         time=np.concatenate([one.raw.time for one in series]),
@@ -195,11 +180,11 @@ def _curve(file: str, raw: Raw, label: str, inputs: dict[str, float], settings: 
     return " ".join(filter(None, [named.get("fluid", ""), label])), inputs | raw.said
 
 
-def _labels(curves: _Curves) -> tuple[str, ...]:
+def _labels(curves: Sequence[tuple[str, dict[str, float]]]) -> tuple[str, ...]:
     """Return names of the curves that tell them apart, by their inputs where the files have no names."""
     found = []
-    for name, inputs in zip(curves.names, curves.inputs, strict=True):
-        alike = [each for other, each in zip(curves.names, curves.inputs, strict=True) if other == name]
+    for name, inputs in curves:
+        alike = [each for other, each in curves if other == name]
         differing = [key for key in inputs if len({each.get(key) for each in alike}) > 1]
         rows = INPUT_TABLES["point"].rows | {"load_per_length": INPUT_TABLES["line"].rows["load"]}
         texts = [f"{key.replace('_', ' ')} {format_si(inputs[key], rows[key].dimension)}" for key in differing]

@@ -20,7 +20,6 @@ from stribeck.quantities.units import InputError, checked_word, show, to_si
 
 if TYPE_CHECKING:
     from stribeck.asymptotics.pressure_film import Inlet, PressureFilm
-    from stribeck.strokes.beside_steady import BesideSteady
     from stribeck.strokes.result import Stroke
 
 
@@ -68,24 +67,24 @@ def stroke_command(
     arguments |= {name: word for name, word in (("cavitation", cavitation), ("inlet", inlet)) if word is not None}
     with interruptible() as progress:
         found = sb.stroke(on_step=progress, **arguments)
-        from stribeck.strokes.beside_steady import beside_steady
+        from stribeck.strokes.result import beside_steady
 
         steady = beside_steady(found, lambda done, total: progress(done, total, "steady sliding, point"))
         progress.writes = True
 
         def content() -> dict[str, Any]:
-            return {"title": loaded.title} | found.to_dict() | vars(steady)
+            return {"title": loaded.title} | found.to_dict() | steady
 
         said = partial(_lines, found, steady, loaded.title, verbose)
         return outputs.finish(found, said, loaded.title, content=content, data=output or [], case=loaded)
 
 
-def _lines(found: Stroke, steady: BesideSteady, title: str, verbose: bool) -> Iterator[str]:
+def _lines(found: Stroke, steady: dict[str, float], title: str, verbose: bool) -> Iterator[str]:
     """Yield the mean friction beside the steady one, a table of both, and what else the stroke says of itself."""
     from stribeck.quantities.results import table_lines
 
-    mean, steady_mean = steady.mean_friction, steady.steady_mean_friction
-    doubt = steady.mean_friction_error + steady.steady_mean_friction_error
+    mean, steady_mean = steady["mean_friction"], steady["steady_mean_friction"]
+    doubt = steady["mean_friction_error"] + steady["steady_mean_friction_error"]
     if abs(mean - steady_mean) <= doubt:
         said = "within the errors that of steady sliding at the same speeds"
     else:
@@ -94,9 +93,9 @@ def _lines(found: Stroke, steady: BesideSteady, title: str, verbose: bool) -> It
             f"{part:.2g} times" if abs(part - 1) > 0.5 else f"{100 * abs(part - 1):.2g} % {'above' if part > 1 else 'below'}"
         )
         said = f"{much} that of steady sliding at the same speeds"
-    yield f"Mean friction over the path out is {mean:.3g} ± {steady.mean_friction_error:.1g}, {said}."
+    yield f"Mean friction over the path out is {mean:.3g} ± {steady['mean_friction_error']:.1g}, {said}."
     yield from filter(None, [title])
-    speed = format_si(steady.largest_speed, "speed")
+    speed = format_si(steady["largest_speed"], "speed")
     rows = [
         ("friction on the way out", "stroke", "error", "steady", "error"),
         _row(f"at the largest speed, {speed}", steady, "friction_at_largest_speed", "steady_friction"),
@@ -112,9 +111,9 @@ def _lines(found: Stroke, steady: BesideSteady, title: str, verbose: bool) -> It
         yield "-v shows instants of the last cycle; -o writes all of them with their errors."
 
 
-def _row(label: str, steady: BesideSteady, *names: str) -> tuple[str, ...]:
+def _row(label: str, steady: dict[str, float], *names: str) -> tuple[str, ...]:
     """Return numbers of the stroke and of steady sliding with their errors."""
-    numbers = [(getattr(steady, name), getattr(steady, f"{name}_error")) for name in names]
+    numbers = [(steady[name], steady[f"{name}_error"]) for name in names]
     return (label, *(text for value, error in numbers for text in (f"{value:.4g}", f"± {error:.1g}")))
 
 

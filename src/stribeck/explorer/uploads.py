@@ -34,8 +34,8 @@ from stribeck.fits.table.columns import ABSCISSAS, known_name
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError
 from stribeck.surfaces.analysis import analyse
-from stribeck.surfaces.case_table import surface_table
 from stribeck.surfaces.files import read_topography
+from stribeck.surfaces.several_scans import surface_table
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,7 +1,8 @@
-"""What a stroke gives: friction and films over time, each with its error."""
+"""What a stroke gives: friction and films over time, each with its error, and steady sliding beside it."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
@@ -12,10 +13,11 @@ from stribeck.contacts.contact import Contact, input_texts
 from stribeck.files.datasets import Column
 from stribeck.files.results import Exported, Labelled
 from stribeck.motions.motion import Motion
+from stribeck.numerics.settings import COARSE_RTOL, NEGLIGIBLE
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.results import ByValue, Card, Told
 
-__all__ = ["Stroke"]
+__all__ = ["Stroke", "beside_steady"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -120,3 +122,59 @@ class Stroke(Exported, Told, ByValue):
             "notes": " ".join(self.notes),
         }
         return columns, {"time": ("time", self.time, "s", "time since the start")}, attributes
+
+
+SLOWEST = NEGLIGIBLE**2  # Speed over the largest from which on steady friction is solved
+
+
+def beside_steady(stroke: Stroke, on_point: Callable[[int, int], None] | None = None) -> dict[str, float]:
+    """Return friction on the way out of the last cycle, beside steady sliding at the same speeds, and each error.
+
+    It is friction at the largest speed [m/s], and its mean over the path.
+    """
+    from stribeck.curves.stribeck_curve import stribeck_curve  # slow to import, and a stroke by itself needs none
+
+    # On the way back a body that is not symmetric has other steady states.
+    last = stroke.last_cycle
+    time, speed, friction, doubt = (
+        each[last] for each in (stroke.time, stroke.speed, stroke.friction, stroke.errors["friction"])
+    )
+    top = int(np.argmax(speed))
+    largest = float(speed[top])
+    contact, asperities = stroke.contact, stroke.contact.friction_of_asperities
+    known = asperities.known_speeds
+    slowest = max(SLOWEST * largest, known[0])
+    curve = stribeck_curve(
+        contact,
+        speed=(max(0.99 * slowest, known[0]), min(1.01 * largest, known[1])),
+        points=2,
+        rtol=NEGLIGIBLE * COARSE_RTOL,
+        on_point=on_point,
+    )
+    steady = curve.at(np.clip(speed, slowest, largest)).friction
+    total, error = np.asarray(steady), np.asarray(steady.error)
+    # Slower than the curve, friction is between that of its slow end and that of asperities with all of the load.
+    dry = asperities.coefficient_at_small_area(contact.replace(speed=slowest))
+    slow = np.where((speed > 0) & (speed < slowest), dry, 0.0)
+    found = {
+        "friction_at_largest_speed": (friction[top], doubt[top]),
+        "steady_friction": (total[top], error[top]),
+        "mean_friction": _mean(time, speed, friction, doubt),
+        "steady_mean_friction": _mean(time, speed, total, error + slow),
+    }
+    numbers = {
+        f"{name}{end}": float(each) for name, pair in found.items() for end, each in zip(("", "_error"), pair, strict=True)
+    }
+    return {"largest_speed": largest} | numbers
+
+
+def _mean(time: Array, speed: Array, values: Array, doubt: Array) -> tuple[float, float]:
+    """Return the mean over the path out, and its error: that of the values, and the difference from every second of them."""
+    path = np.maximum(speed, 0.0)
+
+    def mean(numbers: Array, step: int = 1) -> float:
+        t, v = time[::step], path[::step]
+        return float(np.trapezoid(numbers[::step] * v, t) / np.trapezoid(v, t))
+
+    found = mean(values)
+    return found, mean(doubt) + abs(found - mean(values, 2))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
@@ -17,6 +19,7 @@ from stribeck.equations.operators import Operators
 from stribeck.equations.state import State
 from stribeck.fluids.fluid import Cavitation
 from stribeck.motions.motion import Motion, checked_motion
+from stribeck.numerics.panels import Mesh
 from stribeck.numerics.settings import COARSE_ORDER, COARSE_RTOL, LEAST_DEGREE, NEGLIGIBLE, SAFETY
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.formats import format_si
@@ -26,7 +29,6 @@ from stribeck.solids.solid import lengths_of
 from stribeck.solver.solve import solved_point
 from stribeck.solver.solve_error import SolveError, describe
 from stribeck.strokes.march import March, StepLost
-from stribeck.strokes.meshes import shared_mesh
 from stribeck.strokes.result import Stroke
 
 __all__ = ["stroke"]
@@ -318,3 +320,27 @@ def _error(fine: Array, coarse: Array) -> Array:
     found[::2] = widest
     found[1::2] = np.maximum(widest[:-1], widest[1:])
     return found
+
+
+def shared_mesh(states: Sequence[State], order: int) -> Mesh:
+    """Return a mesh that is as fine as those of several states and their mirror images, which shares its places with them."""
+    known = [state.mesh.edges + state.exit for state in states]
+    reach = max(float(edges[-1]) for edges in known)
+    sides = [np.sort(sign * edges) for edges in known for sign in (1.0, -1.0)]
+    ends = np.unique([x for edges in sides for x in edges if 0 < x < reach])
+    ends = np.concatenate([[0.0], ends, [reach]])
+    # Panels for a length, between one edge and the next: as many as the finest mesh has there.
+    middles = 0.5 * (ends[1:] + ends[:-1])
+    finest = np.full(middles.size, math.inf)
+    for edges in sides:
+        row = np.searchsorted(edges, middles)
+        inside = (row > 0) & (row < len(edges))
+        finest[inside] = np.fmin(finest[inside], np.diff(edges)[row[inside] - 1])
+    count = np.append(0.0, np.cumsum(np.diff(ends) / finest))
+    model = states[0].groups.model
+    places = np.unique(np.abs(model.profile.places))
+    found = [0.0]
+    for start, end in pairwise(np.interp([0.0, *places[(places > 0) & (places < reach)], reach], ends, count)):
+        found.extend(np.interp(np.linspace(start, end, math.ceil(end - start) + 1)[1:], count, ends))
+    positive = np.array(found)
+    return Mesh(np.append(-positive[:0:-1], positive), order, states[0].mesh.scale)

@@ -3,14 +3,12 @@
 from stribeck.contact_laws.persson import PerssonLaw, exponential_limit, persson_law
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
 from stribeck.surfaces.analysis import Surface, analyse
-from stribeck.surfaces.case_table import write_surface_table
 from stribeck.surfaces.departures import Departures
 from stribeck.surfaces.detrend import Form, detrended
 from stribeck.surfaces.files import read_topography
-from stribeck.surfaces.fit_result import Estimate, SelfAffineFit
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum, power_spectrum
-from stribeck.surfaces.self_affine_fit import fit_self_affine
-from stribeck.surfaces.several_scans import CombinedSurface, combine
+from stribeck.surfaces.self_affine_fit import Estimate, SelfAffineFit, fit_self_affine
+from stribeck.surfaces.several_scans import CombinedSurface, combine, write_surface_table
 from stribeck.surfaces.topography import Topography, synthetic_topography
 
 __all__ = [

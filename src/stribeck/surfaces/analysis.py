@@ -23,9 +23,8 @@ from stribeck.quantities.results import Card, Told
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.departures import Departures, departure_notes, departures, height_numbers
 from stribeck.surfaces.detrend import Form, Trend, detrended
-from stribeck.surfaces.fit_result import Estimate, SelfAffineFit
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum, Window, power_spectrum
-from stribeck.surfaces.self_affine_fit import MAX_DEVIANCE_RATIO, fit_self_affine
+from stribeck.surfaces.self_affine_fit import MAX_DEVIANCE_RATIO, Estimate, SelfAffineFit, fit_self_affine
 from stribeck.surfaces.topography import Topography
 
 __all__ = ["Surface", "analyse"]

@@ -1,21 +1,197 @@
-"""Fit of a self-affine spectrum to a measured one, with its uncertainty."""
+"""A self-affine spectrum fitted to a measured one: the spectrum, its standard errors, and intervals of alpha and beta.
+
+Waves longer than a scan or shorter than a few of its points are not seen: an interval holds the values for all of them.
+"""
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any
 
 import numpy as np
 
 from stribeck._types import Array, Flags
+from stribeck.contact_laws.persson import GAMMA, exponential_limit
 from stribeck.contact_laws.spectrum import SelfAffine
+from stribeck.quantities.docstrings import Described
 from stribeck.quantities.units import InputError, checked_kind
-from stribeck.surfaces.fit_result import FitParameters, SelfAffineFit, central_differences
 from stribeck.surfaces.measured_spectrum import MIN_WAVES_IN_SCAN, MeasuredSpectrum, line_density
 
-__all__ = ["fit_self_affine"]
+__all__ = ["Estimate", "FitParameters", "SelfAffineFit", "central_differences", "fit_self_affine"]
+
+STANDARD_ERRORS_95 = 1.959964  # Standard errors to each side that hold 95 % of a normal distribution
+
+# Wave numbers of the longest wave of the surface, over the lowest that was seen; the last is as good as none at all
+LONGEST_WAVE_RATIOS = (1.0, 0.3, 0.1, 1e-3)
+
+SHORTEST_WAVE = 1e-9  # Shortest wave of any surface: a few atoms [m]
+
+
+@dataclass(frozen=True)
+class Estimate(Described):
+    """A number with its 95 % interval."""
+
+    value: Annotated[float, "the number, for a surface without waves longer or shorter than those seen"]
+    low: Annotated[float, "lower end; 0 for a positive number that is only bounded from above"]
+    high: Annotated[float, "upper end"]
+
+    @property
+    def interval(self) -> str:
+        """The interval in words, such as ``"1.76 to 1.83"``."""
+        return f"at most {self.high:.3g}" if self.low == 0 else f"{self.low:.3g} to {self.high:.3g}"
+
+    @property
+    def relative_error(self) -> float | None:
+        """Standard error over the value, of which 1.96 reach to the farther end of the interval; None without a lower end."""
+        if self.low == 0:
+            return None
+        return math.log(max(self.high / self.value, self.value / self.low)) / STANDARD_ERRORS_95
+
+
+@dataclass(frozen=True, eq=False)
+class FitParameters:
+    """Parameters of a fit with their covariance, and the surface that belongs to them."""
+
+    # Logarithm of the spectrum at `centre`, Hurst exponent, logarithms of the roll-off and of the noise, if there are such,
+    # and of q0 and q1
+    theta: Array
+    covariance: Array  # Of `theta`; zero for a longest wave that was not seen
+    centre: float  # Logarithm of the wave number in the middle of the fit
+    is_line: bool  # Whether the spectrum is that along a line
+    roll_off: bool  # Whether the spectrum shows a roll-off
+    q0_found: bool  # Whether it shows its longest wave
+    q1_found: bool  # Whether it shows its shortest wave
+
+    def physical(self, theta: Array, corner: float = 1.0, lowest: float = 1.0) -> Array:
+        """Return ln h_rms, H, ln q_r, ln q_0 and ln q_1, with roll-off and q_0 moved by factors to longer waves."""
+        H, q1 = float(theta[1]), float(theta[-1])
+        q_r = (max(theta[2], theta[-2]) if self.roll_off else theta[-2]) + math.log(corner)
+        q0 = (theta[-2] if self.roll_off else q_r) + math.log(lowest)
+        shape = SelfAffine(1.0, math.exp(q0), math.exp(q1), H, math.exp(q_r))
+        if self.is_line:
+            level = float(line_density(np.array(math.exp(self.centre)), shape))
+        else:
+            level = float(shape.spectrum.density[0]) * math.exp(-2 * (1 + H) * max(self.centre - q_r, 0.0))
+        return np.array([0.5 * (theta[0] - math.log(level)), H, q_r, q0, q1])
+
+    def surface(self, theta: Array, corner: float = 1.0, lowest: float = 1.0, finest: bool = False) -> SelfAffine:
+        """Return the surface of the parameters, optionally with longer waves and all shorter ones."""
+        if finest:
+            theta = np.array([*theta[:-1], max(theta[-1], math.log(2 * math.pi / SHORTEST_WAVE))])
+        log_h, H, q_r, q0, q1 = map(float, self.physical(theta, corner, lowest))
+        return SelfAffine(math.exp(log_h), math.exp(q0), math.exp(q1), H, math.exp(max(q_r, q0)))
+
+    @property
+    def admissible_extensions(self) -> list[tuple[float, float, bool]]:
+        """Factors on roll-off and q_0, and whether shorter waves go on, of surfaces that the scan does not exclude."""
+        shorter = (False,) if self.q1_found else (False, True)
+        if self.q0_found:
+            longer = [(1.0, 1.0)]
+        else:
+            # A power law that is not seen to end may end, or become a plateau, anywhere beyond the scan.
+            longer = (
+                [(1.0, factor) for factor in LONGEST_WAVE_RATIOS]
+                if self.roll_off
+                else list(itertools.product(LONGEST_WAVE_RATIOS, LONGEST_WAVE_RATIOS))
+            )
+        return [(*factors, finest) for factors in longer for finest in shorter]
+
+
+@dataclass(frozen=True, eq=False)
+class SelfAffineFit(Described):
+    """Self-affine spectrum that fits a measured one."""
+
+    roughness: Annotated[SelfAffine, "the spectrum; its ends are cut-offs of the surface if found, else those of the scan"]
+    errors: Annotated[dict[str, float], "standard errors of h_rms [m], q0, roll_off, q1 [1/m] and hurst [-], if found"]
+    found: Annotated[tuple[str, ...], "which of roll_off, q0, q1 and noise the spectrum shows"]
+    noise: Annotated[float, "spectrum of the white noise, as that of the measurement; 0 where none was found"]
+    deviance: Annotated[float, "deviance over its expectation: near one where the model holds", "1"]
+    band: Annotated[tuple[float, float], "wave numbers that were fitted", "1/m"]
+    _parameters: FitParameters = field(repr=False)
+
+    def exponential_limit(self, gamma: float = GAMMA) -> tuple[Estimate, Estimate]:
+        """Return alpha and beta of the contact law, each with its 95 % interval.
+
+        Parameters
+        ----------
+        gamma : float
+            Reduction of the elastic energy [-].
+
+        Returns
+        -------
+        tuple of Estimate
+            alpha and beta [-].
+
+        Notes
+        -----
+        The interval is that of a profile over what both ends of the spectrum hide: from the smallest of ``value - 1.96
+        standard errors`` to the largest of ``value + 1.96 standard errors``, over longest waves from the scan on, and with
+        the power law to its end at the shortest wave seen or at 1 nm.  If neither a roll-off nor the longest wave was seen,
+        ``beta`` has no lower bound, and its interval begins at 0.  How often the intervals hold the truth is in
+        docs/surfaces.md, from ``benchmarks/surface_errors.py``.
+        """
+        known = self._parameters
+        best = np.log(exponential_limit(known.surface(known.theta), gamma))
+        hidden = known.admissible_extensions
+        profile = np.array([np.log(exponential_limit(known.surface(known.theta, *each), gamma)) for each in hidden])
+        low, high = np.empty(2), np.empty(2)
+        for i in (0, 1):
+            for ends, at, sign in ((low, profile[:, i].argmin(), -1), (high, profile[:, i].argmax(), 1)):
+
+                def limit(theta: Array, each: tuple[float, float, bool] = hidden[at]) -> Array:
+                    return np.log(exponential_limit(known.surface(theta, *each), gamma))
+
+                turn = central_differences(limit, known.theta)[i]
+                ends[i] = math.exp(
+                    profile[at, i] + sign * STANDARD_ERRORS_95 * math.sqrt(float(turn @ known.covariance @ turn))
+                )
+        if not (known.q0_found or known.roll_off):
+            low[1] = 0.0
+        alpha, beta = (Estimate(*map(float, row)) for row in zip(np.exp(best), low, high, strict=True))
+        return alpha, beta
+
+    @property
+    def beta_of_shorter_waves(self) -> float:
+        """Largest beta over the value, if the power law goes on to shorter waves than were seen."""
+        known = self._parameters
+        ends = (exponential_limit(known.surface(known.theta, finest=finest))[1] for finest in (False, not known.q1_found))
+        seen, all_waves = ends
+        return all_waves / seen
+
+    def at(self, wavenumber: Array, *, is_line: bool = False, noise: bool = True) -> Array:
+        """Return the fitted spectrum, as a map or a line shows it.
+
+        Parameters
+        ----------
+        wavenumber : ndarray
+            Wave numbers [1/m].
+        is_line : bool
+            Whether the spectrum along a line is wanted.
+        noise : bool
+            Whether the noise is part of it.
+
+        Returns
+        -------
+        ndarray
+            Spectrum [m^4; m^3 along a line].
+        """
+        q = np.asarray(wavenumber, dtype=float)
+        clean = line_density(q, self.roughness) if is_line else self.roughness.spectrum.at(q)
+        return clean + (self.noise if noise else 0.0)
+
+
+def central_differences(function: Callable[[Array], Array], x: Array) -> Array:
+    """Return central differences of a smooth function of parameters of order one."""
+    columns = []
+    for i in range(x.size):
+        step = np.zeros(x.size)
+        step[i] = 1e-5
+        columns.append((function(x + step) - function(x - step)) / 2e-5)
+    return np.stack(columns, axis=1)
+
 
 # Steps of a fit, which needs up to 30; at the bound of the exponent, of a steep line, it creeps on without a change
 MAX_STEPS = 60
@@ -58,15 +234,13 @@ def fit_self_affine(measured: MeasuredSpectrum) -> SelfAffineFit:
 
     Source: [Whittle53]; [Schwarz78] for the penalty.
     """
-    rings = checked_kind(
-        "measured", measured, MeasuredSpectrum, "a MeasuredSpectrum, as of power_spectrum(topography)"
-    ).reliable
-    data = _Data(measured.density[rings], measured.modes[rings], measured.inner[rings], measured.is_line)
-    q = measured.wavenumber[rings]
-    chosen = min(_candidates(data, q), key=lambda trial: trial.score, default=None)
+    checked_kind("measured", measured, MeasuredSpectrum, "a MeasuredSpectrum, as of power_spectrum(topography)")
+    data = _rings(measured, measured.reliable)
+    q = data.wavenumber
+    chosen = _best(_candidates(data))
     if chosen is None:
         raise InputError("no self-affine spectrum fits the measured one; look at it with --plot.")
-    fit = _result(chosen, data, measured, q)
+    fit = _result(chosen, data)
     if fit.noise > 0 and fit.noise > fit.at(q[:1] * (1 + 1e-9), is_line=data.is_line, noise=False)[0]:
         raise InputError(
             f"the scan shows only white noise at wavelengths from {2 * math.pi / q[-1]:.3g} m to "
@@ -78,15 +252,10 @@ def fit_self_affine(measured: MeasuredSpectrum) -> SelfAffineFit:
 # --- the model ---
 
 
-@dataclass(frozen=True, eq=False)
-class _Data:
-    density: Array
-    modes: Array
-    inner: Array
-    is_line: bool
-
-    def part(self, flags: Flags) -> _Data:
-        return replace(self, density=self.density[flags], modes=self.modes[flags], inner=self.inner[flags])
+def _rings(measured: MeasuredSpectrum, chosen: Flags | slice) -> MeasuredSpectrum:
+    """Return a spectrum of some of its rings."""
+    kept = {name: getattr(measured, name)[chosen] for name in ("wavenumber", "density", "modes", "inner")}
+    return replace(measured, **kept)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,21 +279,19 @@ class _Trial:
         return self.deviance + (self.parameters - cheap) * math.log(self.weight) + 3.84 * cheap
 
 
-def _candidates(data: _Data, q: Array) -> Iterator[_Trial]:
-    n = q.size
-    plain = [_fit_between_cut_offs(data, q, roll_off, False, 0, n) for roll_off in (False, True)]
-    best = min((trial for trial in plain if trial), key=lambda trial: trial.score, default=None)
-    if best is None:
-        return
+def _best(trials: Iterable[_Trial | None]) -> _Trial | None:
+    return min(filter(None, trials), key=lambda trial: trial.score, default=None)
+
+
+def _candidates(data: MeasuredSpectrum) -> list[_Trial | None]:
+    n = data.wavenumber.size
+    trials = [_fit_between_cut_offs(data, roll_off, False, 0, n) for roll_off in (False, True)]
+    if not any(trials):
+        return []
     # Sharp cut-offs: all places with six rings left between them, one end after the other.  The spectrum along a line
     # does not vanish beyond them, so they are looked for in maps only.
     if data.is_line:
-        yield from (trial for trial in plain if trial)
-        yield from (
-            trial for trial in (_fit_between_cut_offs(data, q, roll_off, True, 0, n) for roll_off in (False, True)) if trial
-        )
-        return
-    trials = list(plain)
+        return [*trials, *(_fit_between_cut_offs(data, roll_off, True, 0, n) for roll_off in (False, True))]
     for first in ("low", "high"):
         # One cut-off, then the second, and the first once more with the second known.
         ends, end = (0, n), first
@@ -134,32 +301,25 @@ def _candidates(data: _Data, q: Array) -> Iterator[_Trial]:
                 if end == "low"
                 else [(ends[0], j) for j in range(ends[0] + 6, n)]
             )
-            found = _fit_best_cut_offs(data, q, places)
+            found = _fit_best_cut_offs(data, places)
             trials.append(found)
             ends = (found.low, found.high) if found else ends
             end = "high" if end == "low" else "low"
-    noisy = min((trial for trial in trials if trial), key=lambda trial: trial.score)
-    if noisy.high == n:
-        trials.append(_fit_between_cut_offs(data, q, noisy.roll_off, True, noisy.low, n))
-        trials.append(_fit_between_cut_offs(data, q, not noisy.roll_off, True, noisy.low, n))
-    yield from (trial for trial in trials if trial)
+    noisy = _best(trials)
+    if noisy is not None and noisy.high == n:
+        trials += [_fit_between_cut_offs(data, roll_off, True, noisy.low, n) for roll_off in (False, True)]
+    return trials
 
 
-def _fit_best_cut_offs(data: _Data, q: Array, places: list[tuple[int, int]]) -> _Trial | None:
-    trials = [_fit_between_cut_offs(data, q, False, False, low, high) for low, high in places]
-    best = min((trial for trial in trials if trial), key=lambda trial: trial.score, default=None)
-    if best is None:
-        return None
-    rolled = _fit_between_cut_offs(data, q, True, False, best.low, best.high)
-    return min((trial for trial in (best, rolled) if trial), key=lambda trial: trial.score)
+def _fit_best_cut_offs(data: MeasuredSpectrum, places: list[tuple[int, int]]) -> _Trial | None:
+    best = _best(_fit_between_cut_offs(data, False, False, low, high) for low, high in places)
+    return None if best is None else _best((best, _fit_between_cut_offs(data, True, False, best.low, best.high)))
 
 
-def _fit_between_cut_offs(data: _Data, q: Array, roll_off: bool, noise: bool, low: int, high: int) -> _Trial | None:
+def _fit_between_cut_offs(data: MeasuredSpectrum, roll_off: bool, noise: bool, low: int, high: int) -> _Trial | None:
     """Return the fit with cut-offs before ring ``low`` and after ring ``high`` - 1."""
-    n = q.size
-    inside = np.zeros(n, dtype=bool)
-    inside[low:high] = True
-    part, centre = data.part(inside), math.log(q[low] * q[high - 1]) / 2
+    q, n = data.wavenumber, data.wavenumber.size
+    part, centre = _rings(data, slice(low, high)), math.log(q[low] * q[high - 1]) / 2
     from scipy.optimize import least_squares  # here, as it takes a fifth of a second to import
 
     # Beyond a cut-off only what the window leaks is left: a level of its own for each ring.
@@ -167,7 +327,7 @@ def _fit_between_cut_offs(data: _Data, q: Array, roll_off: bool, noise: bool, lo
         if outside.size and not outside.min() < CUT_OFF_RATIO * data.density[edge]:
             return None
     levels = n - (high - low)
-    slope, height = np.polyfit(np.log(q[inside]) - centre, np.log(part.density), 1, w=np.sqrt(part.modes))
+    slope, height = np.polyfit(np.log(part.wavenumber) - centre, np.log(part.density), 1, w=np.sqrt(part.modes))
     steep = 1.0 if data.is_line else 2.0
     values = [height, min(max((-slope - steep) / 2, 0.1), 0.95)]
     lower, upper = [-np.inf, 0.01], [np.inf, 0.9999]
@@ -203,7 +363,7 @@ def _fit_between_cut_offs(data: _Data, q: Array, roll_off: bool, noise: bool, lo
     return _Trial(best.x, roll_off, noise, low, high, 2 * best.cost, len(values) + levels, weight)
 
 
-def _model(theta: Array, data: _Data, centre: float, roll_off: bool, noise: bool) -> Array:
+def _model(theta: Array, data: MeasuredSpectrum, centre: float, roll_off: bool, noise: bool) -> Array:
     """Return the model averaged over each ring, C at its own level exp(theta_0) where ln q = centre."""
     H = float(theta[1])
     if data.is_line:
@@ -222,18 +382,17 @@ def _model(theta: Array, data: _Data, centre: float, roll_off: bool, noise: bool
 # --- from the parameters of the fit to those of the surface ---
 
 
-def _result(trial: _Trial, data: _Data, measured: MeasuredSpectrum, q: Array) -> SelfAffineFit:
-    inside = slice(trial.low, trial.high)
-    part = replace(data, density=data.density[inside], modes=data.modes[inside], inner=data.inner[inside])
+def _result(trial: _Trial, data: MeasuredSpectrum) -> SelfAffineFit:
+    q, part = data.wavenumber, _rings(data, slice(trial.low, trial.high))
     centre = math.log(q[trial.low] * q[trial.high - 1]) / 2
-    fundamental = measured.lowest / MIN_WAVES_IN_SCAN
+    fundamental = data.lowest / MIN_WAVES_IN_SCAN
     cuts = {"q0": trial.low > 0, "q1": trial.high < q.size}
     if cuts["q0"]:
         q0 = float(q[trial.low])
     else:
         # A roll-off goes on to the whole scan at least; a power law must not be prolonged to where it was not seen.
-        q0 = fundamental if trial.roll_off else float(measured.lowest)
-    q1 = math.sqrt(q[trial.high - 1] * q[trial.high]) if cuts["q1"] else float(measured.highest)
+        q0 = fundamental if trial.roll_off else float(data.lowest)
+    q1 = math.sqrt(q[trial.high - 1] * q[trial.high]) if cuts["q1"] else float(data.highest)
 
     def model(theta: Array) -> Array:
         return np.asarray(np.log(_model(theta, part, centre, trial.roll_off, trial.noise)))
@@ -249,7 +408,7 @@ def _result(trial: _Trial, data: _Data, measured: MeasuredSpectrum, q: Array) ->
         if cuts[name]:
             covariance[place, place] = (max(q[ring] - q[ring - 1], fundamental) / q[ring]) ** 2 / 3
     theta = np.concatenate((trial.values, [math.log(q0), math.log(q1)]))
-    parameters = FitParameters(theta, covariance, centre, measured.is_line, trial.roll_off, cuts["q0"], cuts["q1"])
+    parameters = FitParameters(theta, covariance, centre, data.is_line, trial.roll_off, cuts["q0"], cuts["q1"])
     values, turn = parameters.physical(theta), central_differences(parameters.physical, theta)
     spread = covariance.copy()
     if trial.roll_off and not cuts["q0"]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
@@ -14,17 +15,17 @@ from stribeck.contact_laws.persson import PerssonLaw, exponential_limit, persson
 from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.files.datasets import number_columns
 from stribeck.files.results import Exported, Labelled
+from stribeck.files.writing import atomic_write
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.number import Number, plain_numbers
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.units import InputError, show
 from stribeck.surfaces.analysis import WAVES, Surface
-from stribeck.surfaces.fit_result import STANDARD_ERRORS_95, Estimate, SelfAffineFit
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum
-from stribeck.surfaces.self_affine_fit import fit_self_affine
+from stribeck.surfaces.self_affine_fit import STANDARD_ERRORS_95, Estimate, SelfAffineFit, fit_self_affine
 
-__all__ = ["CombinedSurface", "combine"]
+__all__ = ["CombinedSurface", "combine", "surface_table", "write_surface_table"]
 
 # Numbers of the heights of each scan, whose mean is printed.
 HEIGHTS = ("scan_rms_height", "mean_deviation", "skewness", "kurtosis", "scan_rms_slope")
@@ -294,3 +295,55 @@ def _notes(surfaces: Sequence[Surface], fit: SelfAffineFit) -> tuple[str, ...]:
             own.setdefault(note, []).append(each.source)
     notes += [note if len(names) == len(surfaces) else f"{', '.join(names)}: {note}" for note, names in own.items()]
     return tuple(notes)
+
+
+def write_surface_table(surface: Surface | CombinedSurface, path: str | os.PathLike[str], *, force: bool = False) -> None:
+    """Write the fitted roughness as the table ``[surface]`` of a case file.
+
+    Parameters
+    ----------
+    surface : Surface or CombinedSurface
+        The surface, of one scan or of several.
+    path : str or path-like
+        File to write, ending in ``.toml``.
+    force : bool
+        Whether an existing file is replaced.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written, or exists and ``force`` is not given.
+    """
+    if not hasattr(surface, "fit"):
+        raise InputError(f"surface = {show(surface)}; it must be a Surface, as of analyse(topography) or combine(surfaces).")
+    with atomic_write(path, (".toml",), force=force) as temporary:
+        temporary.write_text(surface_table(surface), encoding="utf-8")
+
+
+def surface_table(surface: Surface | CombinedSurface, *, has_errors: bool = True) -> str:
+    """Return the text of the table ``[surface]``, with or without errors that are propagated."""
+    r, errors = surface.roughness, surface.fit.errors
+    alpha, beta = surface.limits
+
+    def line(name: str, value: str, error: str) -> str:
+        return f"{f'{name} = {value}':<34}# {error}"
+
+    def share(name: str) -> str:
+        values = {"h_rms": r.h_rms, "q0": r.q0, "roll_off": r.roll_off or r.q0, "q1": r.q1, "hurst": r.hurst}
+        return f"standard error {100 * errors[name] / values[name]:.2g} %" if name in errors else "end of the scan"
+
+    height_error = f" +- {100 * errors['h_rms'] / r.h_rms:.2g} %" if has_errors else ""
+    named = [(name, each.relative_error) for name, each in (("alpha", alpha), ("beta", beta))]
+    rows = [
+        f"# From {surface.source}: "
+        f"alpha = {alpha.value:.3g} ({alpha.interval}), beta = {beta.value:.3g} ({beta.interval}), at 95 %",
+        "[surface]",
+        line("h_rms", f'"{r.h_rms:.6e} m{height_error}"', share("h_rms")),
+        line("hurst", f"{r.hurst:.5f}", share("hurst")),
+        line("q0", f'"{r.q0:.6e} 1/m"', share("q0")),
+        line("roll_off", f'"{r.roll_off or r.q0:.6e} 1/m"', share("roll_off") if "roll_off" in errors else "none seen: as q0"),
+        line("q1", f'"{r.q1:.6e} 1/m"', share("q1")),
+        f"gamma = {surface.gamma:g}",
+        *(f'{name}_error = "{100 * error:.2g} %"' for name, error in named if has_errors and error is not None),
+    ]
+    return "\n".join(rows) + "\n"

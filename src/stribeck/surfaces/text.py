@@ -332,7 +332,13 @@ def _values(
     path: Path, cells: list[list[str]], numbers: list[int], *, comma: bool, codes: tuple[str, ...]
 ) -> tuple[Array, list[str]]:
     """Return the numbers in cells, NaN where they hold no height, and which codes stand for that."""
-    values = _numbers(path, [["nan" if _is_missing(cell) else cell for cell in row] for row in cells], numbers, comma=comma)
+    values = np.empty((len(cells), len(cells[0])))
+    for k, row in enumerate(cells):
+        for j, cell in enumerate(row):
+            try:
+                values[k, j] = math.nan if _is_missing(cell) else float(cell.replace(",", ".") if comma else cell)
+            except ValueError:
+                raise InputError(f"{path}: line {numbers[k]}, column {j + 1} is {show(cell)}, not a number.") from None
     # Positions are left as they are: only heights may be missing.
     z = values if values.shape[1] > 3 else values[:, -1]
     beyond = ~np.isfinite(z) & ~np.isnan(z) | (np.abs(z) >= MAX_NUMBER)
@@ -350,21 +356,6 @@ def _values(
             notes.append(_missing_note(int(here.sum()), "hold", f"{code:g}, a code for no height,"))
             z[here] = np.nan
     return values, notes
-
-
-def _numbers(path: Path, rows: Sequence[Sequence[str]], numbers: Sequence[int], *, comma: bool) -> Array:
-    """Return the numbers in rows of cells, NaN where a cell holds no value."""
-    values = np.empty((len(rows), len(rows[0]) if rows else 0))
-    for k, row in enumerate(rows):
-        for j, cell in enumerate(row):
-            try:
-                values[k, j] = float(cell.replace(",", ".") if comma else cell)
-            except ValueError:
-                if not is_missing(cell):
-                    where = f"{path}: line {numbers[k]}, column {j + 1}"
-                    raise InputError(f"{where} is {show(cell)}, not a number.") from None
-                values[k, j] = np.nan
-    return values
 
 
 def _missing_note(count: int, verb: str, what: str) -> str:

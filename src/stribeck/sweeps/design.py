@@ -35,8 +35,18 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outputs import COLUMNS, GROUPS
 from stribeck.quantities.results import Card, Shown
 from stribeck.quantities.units import InputError, show
-from stribeck.sweeps.axes import COEFFICIENTS, GROUP_ROWS, Axis, Kind, points_of, read_axes
-from stribeck.sweeps.temperature import NAME, TEMPERATURE, check_temperature_axis, viscosity_at
+from stribeck.sweeps.axes import (
+    COEFFICIENTS,
+    GROUP_ROWS,
+    NAME,
+    TEMPERATURE,
+    Axis,
+    Kind,
+    check_temperature_axis,
+    points_of,
+    read_axes,
+    viscosity_at,
+)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
