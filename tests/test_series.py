@@ -16,16 +16,12 @@ from stribeck.numerics.hermite import (
     weights_through,
 )
 from stribeck.numerics.jets import Tape, polynomial
-from stribeck.numerics.series import beyond, circle, implicit_series, radius
+from stribeck.numerics.series import beyond, implicit_series, radius
 
 pytestmark = pytest.mark.quick
 
 SINGULAR = 1.3
-"""Radius of convergence of the function below."""
-
-
-def function(t):
-    return np.exp(0.7 * t) / (1 + (t / SINGULAR) ** 2)
+"""Radius of convergence of exp(0.7 t)/(1 + (t/SINGULAR)**2)."""
 
 
 def coefficients(order):
@@ -64,13 +60,6 @@ def test_a_polynomial_of_a_jet_has_its_series():
         exact = np.polynomial.Polynomial(outer[:, column])(np.polynomial.Polynomial(inner[:, column])).coef[:6]
         np.testing.assert_allclose(found.coefficients[:, column], exact, rtol=1e-12)
     np.testing.assert_allclose(polynomial(outer, inner[:1]), found.coefficients[:1])
-
-
-def test_values_on_a_circle_give_coefficients_to_rounding():
-    reach = 0.25 * SINGULAR
-    samples = circle(reach, 16)
-    scaled = samples.taylor(function(samples.places), 16) * reach ** np.arange(17.0)
-    np.testing.assert_allclose(scaled, coefficients(16) * reach ** np.arange(17.0), atol=1e-14)
 
 
 def test_the_series_of_a_solution_is_that_of_its_closed_form():

@@ -50,9 +50,9 @@ class FilmOnMesh(NamedTuple):
     clip: Clip | None = None
 
 
-def friction_scale(load: Numbers, speed: Numbers) -> Array:
+def friction_scale(load: Any, speed: Any) -> Any:
     """Return C = 2 F**(1/2) lambda/(3 pi), the factor of all friction integrals for beta = 1."""
-    return np.asarray(2 * np.sqrt(load) * speed / (3 * math.pi))
+    return 2 * np.sqrt(load) * speed / (3 * math.pi)
 
 
 def viscous_friction(equations: Equations, u: Fields, load: Numbers, on: FilmOnMesh, by: str | None = None) -> list[Any]:
@@ -92,7 +92,7 @@ def viscous_friction(equations: Equations, u: Fields, load: Numbers, on: FilmOnM
     return [on_cylinder - factors[1] * moment, factors[0] * (stretch * lower), on_cylinder]
 
 
-def _scale(value: Array, powers: dict[str, float], by: str | None) -> Any:
+def _scale(value: Any, powers: dict[str, float], by: str | None) -> Any:
     """Return a factor that is a product of powers of groups, traced by the logarithm of one of them."""
     return value if by not in powers else Trace.number(by, np.atleast_1d(value), powers[by] * value)
 

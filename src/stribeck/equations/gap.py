@@ -49,7 +49,7 @@ def gap_beside(mesh: Mesh, h: Array, x: float) -> tuple[Any, Any, slice, Array]:
         before, last = last, ((2 * n + 1) * s * last - n * before) / (n + 1)
         legendre_of_s.append(last)
     row = np.array(legendre_of_s) @ reference(mesh.order).to_legendre
-    logs, far = np.log(h[..., nodes] / mesh.far[nodes]), mesh.scale**2 + x * x
+    logs, far = np.log(h[..., nodes]) - np.log(mesh.far[nodes]), mesh.scale**2 + x * x
     value = np.exp(logs @ row) * far
     slope = logs @ (row @ _slope_at_nodes(mesh.order)) / width
     return value, value * (slope + 2 * x / far), nodes, row

@@ -10,14 +10,15 @@ corrector).
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Generic, Protocol, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from stribeck._types import Array
+from stribeck._types import Array, Flags, Indices
+from stribeck.numerics.dual import Dual, slope_of, value_of
 from stribeck.numerics.settings import HALF_DIGITS, MAX_LOG_STEP, MAX_STATES, MIN_LOG_STEP, NEGLIGIBLE, STEP_GROWTH
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
@@ -79,6 +80,21 @@ class Path(ABC):
     def last_states(self, upwards: bool) -> Sequence[Any]:
         """Return the states from which the path grows."""
         return [self.expansions[-1 if upwards else 0]]
+
+    def around(self, s: float) -> tuple[Any, Any]:
+        """Return the solved states on both sides of a coordinate."""
+        k = int(self._interval_of(np.array([s]))[0])
+        return self.expansions[k], self.expansions[min(k + 1, len(self.expansions) - 1)]
+
+    def _interval_of(self, s: Array) -> Indices:
+        """Return the number of the interval of each coordinate."""
+        return np.clip(np.searchsorted(self.coordinates, s, side="right") - 1, 0, max(len(self.coordinates) - 2, 0))
+
+    def pieces(self, s: Array) -> Iterator[tuple[int, Flags]]:
+        """Yield the numbers of the intervals in which coordinates lie, and which lie there."""
+        where = self._interval_of(s)
+        for k in np.unique(where).tolist():
+            yield k, where == k
 
     def places(self, parts: Array) -> Array:
         """Return coordinates at parts of all intervals, and the last one."""
@@ -181,6 +197,23 @@ class Steered(Protocol):
 
 
 S = TypeVar("S", bound=Steered)
+
+
+class ReadablePath(Path):
+    """A path that gives the observables between its states, too."""
+
+    @abstractmethod
+    def on_interval(self, k: int, s: Any) -> Any:
+        """Return the observables on interval k, at coordinates that may bring their derivatives."""
+
+    def smooth(self, s: Any) -> Any:
+        """Return the observables, without errors, at coordinates that may bring their derivatives, shape (len(s), n)."""
+        places = value_of(s)
+        found = np.empty((2, len(places), len(self.expansions[0].values)))
+        for k, mine in self.pieces(places):
+            here = self.on_interval(k, s[mine])
+            found[0, mine], found[1, mine] = value_of(here), slope_of(here)
+        return Dual(*found) if isinstance(s, Dual) else found[0]
 
 
 @dataclass(frozen=True)

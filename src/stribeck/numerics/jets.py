@@ -104,7 +104,9 @@ class Jet(NDArrayOperatorsMixin):
 
     def __getitem__(self, nodes: Any) -> Jet:
         """Return the series at some nodes, ``jet[..., nodes]``."""
-        return self.mapped(lambda values: values[nodes])
+        found = self.mapped(lambda values: values[nodes])
+        found.log = None if self.log is None else self.log[nodes]
+        return found
 
     def __matmul__(self, weights: Array) -> Jet:
         """Return the series of weighted sums over the nodes."""

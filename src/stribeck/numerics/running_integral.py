@@ -123,8 +123,6 @@ class RunningIntegral:
 
     def __call__(self, values: Array) -> Array:
         """Return the integral at the nodes, shape (..., size), of nodal ``values``, shape (..., size)."""
-        if values.dtype.kind == "c":  # numpy would make the blocks complex each time
-            return np.asarray(self(values.real) + 1j * self(values.imag))
         nodal = values.reshape(*values.shape[:-1], self.mesh.panels, self.mesh.order)
         result = np.matmul(self.blocks, nodal[..., None])[..., 0]
         result += (values @ self._arrived.T)[..., None]

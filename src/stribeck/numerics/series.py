@@ -1,4 +1,4 @@
-r"""Taylor series: of functions from their values, and of solutions of equations order by order.
+r"""Taylor series of solutions of equations, order by order.
 
 A solution of :math:`R(w(t), t) = 0` is expanded about t = 0.  The coefficient of order k of the residual is linear in that of
 the solution,
@@ -6,7 +6,7 @@ the solution,
 .. math:: J w_k = -R_k|_{w_k = 0},
 
 with the Jacobian at the solution: one factorisation serves all orders.  The residual is made of jets,
-:mod:`stribeck.numerics.jets`.  A function of complex numbers has its coefficients to rounding by its values on a circle.
+:mod:`stribeck.numerics.jets`.
 
 Coefficients are in the first axis, order by order.  The module knows no physics.
 Source: [Griewank & Walther 2008] Evaluating Derivatives, chapter 13.
@@ -15,18 +15,15 @@ Source: [Griewank & Walther 2008] Evaluating Derivatives, chapter 13.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.numerics.settings import COEFFICIENT_NOISE, HALF_DIGITS, MAX_LOG_STEP, ROUNDING
+from stribeck.numerics.settings import COEFFICIENT_NOISE, HALF_DIGITS, MAX_LOG_STEP
 
 __all__ = [
-    "Samples",
     "along",
     "beyond",
-    "circle",
     "implicit_series",
     "radius",
 ]
@@ -37,36 +34,6 @@ def along(rate: float, order: int) -> Array:
     found = np.ones(order + 1)
     np.cumprod(rate / np.arange(1.0, order + 1), out=found[1:])
     return found
-
-
-@dataclass(frozen=True, eq=False)
-class Samples:
-    """Where a function is evaluated for its Taylor coefficients about zero."""
-
-    places: Array  # The places
-    weights: Array  # What the values are multiplied by; the sum is the coefficient
-
-    def taylor(self, values: Array, order: int) -> Array:
-        """Return the Taylor coefficients up to ``order``, shape (order + 1, ...), of values, shape (n, ...)."""
-        found = np.tensordot(self.weights[: order + 1], values, 1).real
-        if np.iscomplexobj(self.places):  # what rounding leaves of a coefficient is none
-            reach = np.abs(self.places[0]) ** np.arange(order + 1.0)
-            sizes = np.abs(found.T) * reach
-            found.T[sizes < ROUNDING * sizes.max(axis=-1, keepdims=True)] = 0.0
-        return np.asarray(found)
-
-    def powers(self, order: int) -> Array:
-        """Return the powers of the places up to ``order``, shape (n, order + 1)."""
-        return np.asarray(self.places[:, None] ** np.arange(order + 1))
-
-
-def circle(reach: float, order: int) -> Samples:
-    """Return samples in the upper half plane of a function that is real on the real line, for its orders up to one."""
-    count = 2 * (order // 2 + 2)
-    angles, orders = 2 * np.pi / count * np.arange(count // 2 + 1), np.arange(order + 1)
-    twice = np.where(np.arange(len(angles)) % (count // 2) == 0, 1.0, 2.0)
-    weights = twice / count * np.exp(-1j * orders[:, None] * angles) * reach ** -orders[:, None].astype(float)
-    return Samples(reach * np.exp(1j * angles), weights)
 
 
 def implicit_series(

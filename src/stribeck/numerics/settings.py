@@ -25,7 +25,6 @@ WINDOW = 6  # Neighbouring states whose values and slopes a polynomial takes; wi
 MAX_DEGREE = 18
 # Rounding of coefficients, magnified by the equations that they solve: a radius of convergence is read off larger ones.
 COEFFICIENT_NOISE = EPSILON**0.75
-SAMPLE_RADIUS_RATIO = 0.25  # Distance of samples over the radius of convergence; nearer, rounding grows, farther, truncation
 INNER_PLACES = 3  # Places, evenly apart, where an interval is checked: laws with kinks may agree by accident at one
 
 # Of balls: what two meshes tell of errors, by tests/test_ball_errors.py.

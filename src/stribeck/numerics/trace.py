@@ -50,8 +50,6 @@ class Matrix:
 
     def __call__(self, values: Array) -> Array:
         """Return what it makes of nodal values."""
-        if values.dtype.kind == "c":  # numpy would make the matrix complex each time
-            return np.asarray(self(values.real) + 1j * self(values.imag))
         return np.asarray(values @ self.matrix.T)
 
     def after(self, operator: Array) -> Array:

@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
 from functools import partial
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -52,7 +52,7 @@ class Neighbours:
 
     def __init__(self, rtol: float, most: int = MAX_STATES) -> None:
         self.rtol = rtol
-        self._steps: dict[str, _Steps] = {"line": LineSteps(rtol), "point": _BallSteps(rtol)}
+        self._steps: dict[str, Any] = {"line": LineSteps(rtol), "point": _BallSteps(rtol)}
         self._known: deque[_Known] = deque(maxlen=most)
         self._last: tuple[_Known, Any] | None = None
 
@@ -174,36 +174,10 @@ def _take_apart(value: Any, logs: list[float], kind: list[Any]) -> None:
         kind.append(value if isinstance(value, str | int | None) else type(value))
 
 
-class _Steps(Protocol):
-    """How states of a geometry are solved, one from others."""
-
-    order: int  # Degree of the polynomial that predicts a state from those along a line
-
-    def start(self, groups: Groups) -> Any:
-        """Return a state from cold, whose mesh others may share."""
-
-    def from_cold(self, groups: Groups) -> Any:
-        """Return a state from cold, on the mesh that suits it best."""
-
-    def follow(self, line: Line, groups: Groups) -> Any:
-        """Return a state from those along a line, from cold where that fails."""
-
-    def kept(self, state: Any) -> Any:
-        """Return what is kept of a state while others are solved."""
-
-    def observed(
-        self, state: Any, names: Sequence[str], changes: Sequence[Change], by: Sequence[str], inputs: Mapping[str, float]
-    ) -> tuple[Array, Array, Array]:
-        """Return observables with their derivatives and errors."""
-
-    def finish(self, state: Any, groups: Groups, contact: Contact | None) -> Any:
-        """Return a state as a solution, or raise the error of its outcome."""
-
-
 class _BallSteps:
-    """Balls, of which only the last keeps its factors."""
+    """Solves states of balls one from another as :class:`LineSteps` does those of lines; only the last keeps its factors."""
 
-    order = 2
+    order = 2  # Degree of the polynomial that predicts a state from those along a line
 
     def __init__(self, rtol: float) -> None:
         self.rtol = rtol

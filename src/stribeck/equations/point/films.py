@@ -42,36 +42,12 @@ class FluxSlopes(NamedTuple):
     rim: tuple[Array, Array, Array]  # Mobility at the rim, and the derivatives of mobility and carried amount by the gap there
 
 
-class OutsideFilm(Protocol):
-    """The film outside the rim, less a film of constant viscosity."""
-
-    @property
-    def drag(self) -> float:
-        """Estimate of the drag of the film outside the rim."""
-
-    def friction_error(self, offset: float) -> float:
-        """Return an estimate of the error of its friction integrals, with an offset."""
-
-    @property
-    def first(self) -> float:
-        """The factor of cos(theta) in the pressure at the rim."""
-
-    @property
-    def tails(self) -> tuple[float, float, float]:
-        """The parts of shear, pressure flow and moment."""
-
-    def at_radius(self, radius: float) -> OutsideFilm:
-        """Return the film outside another radius."""
-
-    def at_rim(self, angles: Array, modes: int) -> Array:
-        """Return pressure, its radial derivative and lost radial flux at angles of the rim, shape (3, angles)."""
-
-
 class PlaneFilm(Protocol):
     """A film between surfaces that move along x, in the plane."""
 
-    def outside_film(self, speed: float, mesh: PolarMesh) -> OutsideFilm | None:
-        """Return the film outside the rim of a mesh less a film of constant viscosity; None where it is that film."""
+    def outside_film(self, speed: float, mesh: PolarMesh) -> Any:
+        """Return the film outside the rim of a mesh less one of constant viscosity, a `FarThinned`; None where it is that."""
+        return None
 
     def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
         """Return the fluxes."""
@@ -84,12 +60,14 @@ class PlaneFilm(Protocol):
 
     def sheared(self, speed: float, gap: Array) -> Array:
         """Return the drag of sliding, over a Newtonian fluid's, where the walls alone shear the film at ambient pressure."""
+        return np.ones_like(gap)
 
     def carried(self, gap: Array, pressure: Array) -> Array:
         """Return C, the volume that the walls carry."""
 
     def filled(self, gap: Array) -> Array:
         """Return the volume that the walls carry where the gap is full of liquid, over the gap: 1 + s S/h."""
+        return np.ones_like(gap)
 
 
 def weights_of(mesh: PolarMesh) -> tuple[Array, Array]:
@@ -99,13 +77,10 @@ def weights_of(mesh: PolarMesh) -> tuple[Array, Array]:
 
 
 @dataclass(frozen=True)
-class NewtonianPlane:
+class NewtonianPlane(PlaneFilm):
     """A fluid whose flow is linear in the pressure gradient, with laws of viscosity, density and rough flow."""
 
     film: Newtonian = Newtonian()  # That of the line
-
-    def outside_film(self, speed: float, mesh: PolarMesh) -> None:
-        """Return nothing: the film is that at ambient pressure."""
 
     def flow(self, gap: Any, pressure: Any) -> tuple[Any, Any]:
         """Return mobility and carried amount at nodes, of values or of traces."""
@@ -129,10 +104,6 @@ class NewtonianPlane:
     def shear(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Array:
         """Return the viscosity over that at ambient pressure."""
         return np.exp(self.film.viscosity.log(pressure)) if self.film.uses_pressure else np.ones_like(gap)
-
-    def sheared(self, speed: float, gap: Array) -> Array:
-        """Return one."""
-        return np.ones_like(gap)
 
     def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
         """Return the fluxes."""

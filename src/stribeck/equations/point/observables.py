@@ -17,6 +17,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -24,7 +25,6 @@ from numpy.polynomial import legendre
 from stribeck._types import Array
 from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
 from stribeck.equations.point.far_field import tails
-from stribeck.equations.point.films import OutsideFilm
 from stribeck.equations.point.minimum import Minimum, centre, minimum_gap, minimum_on_axis
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.numerics.fourier_panels import PolarMesh, radau
@@ -122,7 +122,7 @@ class FrictionWithin:
     mesh: PolarMesh  # The mesh
     running: Array  # At the nodes: both parts up to there, and `-oint h p_f cos(theta) r`
     finite: tuple[float, float, float]  # The finite parts of both, and what the third is of the far film
-    outside_film: OutsideFilm | None  # What the film beyond the rim has more than that
+    outside_film: Any  # What the film beyond the rim has more than that
     offset: float  # Offset [u_Hz]
     speed: float  # Speed group
     far: FarFilm  # The logarithms
@@ -151,8 +151,8 @@ class FrictionWithin:
                 return 0.0
             more = self.outside_film.at_radius(radius)
             if which < 2:
-                return -more.tails[which]
-            return -0.5 * math.pi * radius * (radius**2 + 2.0 * self.offset) * more.first
+                return float(-more.tails[which])
+            return float(-0.5 * math.pi * radius * (radius**2 + 2.0 * self.offset) * more.first)
         panel, row = self.mesh.radial_interpolation(np.array([radius]))
         far = self.finite[which] + (self.far.couette, self.far.poiseuille, 0.0)[which] * self.speed * log_radius
         return float(row[0] @ self.running[which, panel[0]]) - far

@@ -25,7 +25,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
 from stribeck.equations.point.far_field import DEFLECTION_COEFFICIENT, particular, rates
-from stribeck.equations.point.films import ISOVISCOUS_PLANE, OutsideFilm, PlaneFilm
+from stribeck.equations.point.films import ISOVISCOUS_PLANE, PlaneFilm
 from stribeck.numerics.dual import with_slope
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.numerics.trace import Matrix, Trace, Value, act
@@ -122,7 +122,7 @@ class Equations:
         return self.operators.load_row
 
     @cached_property
-    def outside_film(self) -> OutsideFilm | None:
+    def outside_film(self) -> Any:
         """The film outside the rim less a film of constant viscosity; None where there is no such difference."""
         return self.film.outside_film(self.speed, self.operators.mesh) if self.speed > 0 else None
 

@@ -15,12 +15,12 @@ At the rim and beyond it thins to first order (:mod:`stribeck.equations.thinning
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.equations.point.films import Fluxes, FluxSlopes, OutsideFilm, weights_of
+from stribeck.equations.point.films import Fluxes, FluxSlopes, PlaneFilm, weights_of
 from stribeck.equations.thinning.column import Column, column, mean_wall_stress, times
 from stribeck.equations.thinning.far_field import FarThinned
 from stribeck.fluids.shear_thinning import ShearThinning
@@ -46,13 +46,13 @@ class _Local(NamedTuple):
 
 
 @dataclass(frozen=True)
-class ThinningPlane:
+class ThinningPlane(PlaneFilm):
     """A shear-thinning fluid between smooth walls."""
 
     film: ShearThinning  # That of the line, at a speed
     _last: list[_Local] = field(init=False, repr=False, compare=False, default_factory=list)
 
-    def outside_film(self, speed: float, mesh: PolarMesh) -> OutsideFilm | None:
+    def outside_film(self, speed: float, mesh: PolarMesh) -> Any:
         """Return the film outside the rim less one of constant viscosity; None where the fluid is Newtonian there."""
         found = FarThinned(self.film.law, self.film.slide, speed, mesh.rim, mesh.modes)
         return found if found.lost > HALF_DIGITS else None
@@ -117,10 +117,6 @@ class ThinningPlane:
     def carried(self, gap: Array, pressure: Array) -> Array:
         """Return the amount that the walls carry, which is the same for all laws."""
         return np.asarray(_laws_of_pressure(self.film, pressure)[2] * gap)
-
-    def filled(self, gap: Array) -> Array:
-        """Return one: walls are smooth."""
-        return np.ones_like(gap)
 
     def _unit(self, at: _Local) -> Array:
         return at.rho * 2 * at.gap**2 / (at.eta * self.film.law.time)

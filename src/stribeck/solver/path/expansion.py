@@ -2,7 +2,7 @@ r"""Taylor series of a state of the line, and of its observables, in the logarit
 
 The unknowns are those of the equations, with the logarithm of the gap.  The residual is evaluated on jets,
 :mod:`stribeck.numerics.jets`; a contact law is a polynomial around each separation.  One factorisation serves all orders, see
-:func:`stribeck.numerics.series.implicit_series`.  The observables are sampled on the series of the state.
+:func:`stribeck.numerics.series.implicit_series`.  The observables are jets of the same unknowns.
 """
 
 from __future__ import annotations
@@ -18,13 +18,11 @@ from stribeck.contact_laws.exponential import ExponentialLaw
 from stribeck.contact_laws.scaled import ContinuedLaw, ScaledLaw
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.gap import gap_beside
-from stribeck.equations.line import LOAD, Equations, Fields
+from stribeck.equations.line import Equations, Fields
 from stribeck.equations.observables import ROW, measured
-from stribeck.numerics.jets import Tape
+from stribeck.numerics.jets import Jet, Tape
 from stribeck.numerics.newton import Inverse
-from stribeck.numerics.series import circle, implicit_series, radius
-from stribeck.numerics.settings import SAMPLE_RADIUS_RATIO
-from stribeck.numerics.trace import act
+from stribeck.numerics.series import implicit_series
 from stribeck.quantities.outputs import ALL_NAMES
 
 __all__ = [
@@ -34,7 +32,6 @@ __all__ = [
     "from_logs",
 ]
 
-SHIFTED_COLUMNS = [ROW["central_gap"], ROW["offset"]]
 Direction = tuple[float, float, float]  # Derivatives of ln(speed), ln(load), ln(roughness) along a curve
 
 
@@ -67,42 +64,34 @@ class _Known(NamedTuple):
 def expand(
     equations: Equations, y: Array, inverse: Inverse, groups: Groups, direction: Direction, shifts: Array, order: int
 ) -> Expanded:
-    """Return the series of a state by jets, and of its observables by samples of these series on a circle."""
+    """Return the series of a state and of its observables; at rest ``shifts`` is the series of the shift of its gap."""
     at, law = equations.layout, contact_law(groups)
     w, units = np.zeros((order + 1, at.size)), equations.units(y)
     w[0], units[at.gap] = y, 1.0
     w[0, at.gap] = np.log(y[at.gap])
-    logs = np.full((order + 1, len(ALL_NAMES)), np.nan)
     if isinstance(law, ScaledLaw):
         near: Any = ContinuedLaw.of(law.shape, y[at.gap] / law.decay_length)
         law = replace(law, shape=near)
     tape = Tape(order)
-    here, _ = along(equations, law, groups, direction, tape.growth)
-    gap, contact, logs[:, ROW["contact_load_share"]] = _by_jets(here, tape, w, lambda r: units * inverse(r))
-    samples = circle(SAMPLE_RADIUS_RATIO * radius(w[:, at.gap]), order)
-    powers = samples.powers(order)
-    places = samples.places[:, None]
-    around, load = along(equations, _Known(powers @ contact), groups, direction, lambda rate: np.exp(rate * places))
-    rows = powers @ w
-    rows[:, at.gap] = powers @ gap
-    values = _observables_of_rows(around, rows, load * np.ones((len(rows), 1)))
-    if not equations.is_sliding:
-        lacks = samples.powers(len(shifts) - 1) @ shifts
-        gap, of_load = rows[:, at.gap] + lacks[:, None], equations.operators.mesh.weights
-        values[:, SHIFTED_COLUMNS] += lacks[:, None]
-        values[:, ROW["flux_gap"]] = (gap**-2 @ of_load) / (gap**-3 @ of_load) if np.all(gap > 0) else np.nan
-        values[:, ROW["minimum_gap"]] = values[:, ROW["central_gap"]]
-    return Expanded(w, samples.taylor(values, order), logs)
-
-
-def _by_jets(equations: Equations, tape: Tape, w: Array, inverse: Callable[[Array], Array]) -> tuple[Array, Array, Any]:
-    """Write the series of the unknowns; return those of the gap, of the contact pressure and of ln(contact share)."""
-    at = equations.layout
+    here, load = _along(equations, law, groups, direction, tape)
     u = Fields(*(None if part is None else tape.given(part) for part in equations.fields(w)))
     u = u._replace(gap=np.exp(u.gap))
-    contact = equations.contact(u.gap)
-    known: Any = _Known(contact)
-    rows = replace(equations, law=known).rows(u)
+    known: Any = _Known(here.contact(u.gap))
+    here = replace(here, law=known)
+    _write_series(w, tape, here, u, lambda r: units * inverse(r))
+    values, logs = np.full((2, order + 1, len(ALL_NAMES)), np.nan)
+    found = _observed(here, u, load, None if equations.is_sliding else tape.given(shifts[:, None]))
+    for name, value in found.items():
+        values[:, ROW[name]] = value.coefficients[:, 0]
+    share = found["contact_load_share"]
+    if share.value > 0:
+        logs[:, ROW["contact_load_share"]] = np.log(share).coefficients[:, 0]
+    return Expanded(w, values, logs)
+
+
+def _write_series(w: Array, tape: Tape, equations: Equations, u: Fields, inverse: Callable[[Array], Array]) -> None:
+    """Write the series of the unknowns, whose jets are ``u``."""
+    at, rows = equations.layout, equations.rows(u)
     blocks = [(getattr(at, name), row) for name, row in zip(Fields._fields, rows, strict=True) if row is not None]
     tape.keep(row for _, row in blocks)
     found = np.empty(at.size)
@@ -115,19 +104,30 @@ def _by_jets(equations: Equations, tape: Tape, w: Array, inverse: Callable[[Arra
 
     implicit_series(w, coefficient, inverse, refines=True)
     tape.settle()
-    share = act(equations.operators.panel_load, contact) / LOAD
-    log_share = np.log(share).coefficients[:, 0] if share.value > 0 else np.nan
-    tape.made.clear()
-    return u.gap.coefficients, contact.coefficients, log_share
+    tape.made.clear()  # what is made of these jets from now on has its coefficients at once
 
 
-def along(
-    equations: Equations, law: Any, groups: Groups, direction: Direction, growth: Callable[[float], Any]
-) -> tuple[Equations, Any]:
-    """Return the equations along a path and the load; ``growth`` gives the exponential of a rate times the coordinate."""
+def _observed(equations: Equations, u: Fields, load: Any, shift: Jet | None) -> dict[str, Any]:
+    """Return the jets of the observables but for the minimum gap, whose place moves; at rest all gaps have a shift."""
+    found = {name: value for name, value in measured(equations, u, load).items() if isinstance(value, Jet)}
+    found["central_gap"] = gap_beside(equations.operators.mesh, u.gap, 0.0)[0]
+    if shift is None:
+        return found
+    found |= {name: found[name] + shift for name in ("central_gap", "offset")}
+    found["minimum_gap"] = found["central_gap"]
+    gap, weights = u.gap + shift, equations.operators.mesh.weights
+    if np.all(gap.value > 0):
+        found["flux_gap"] = (gap**-2.0 @ weights) / (gap**-3.0 @ weights)
+    else:
+        del found["flux_gap"]
+    return found
+
+
+def _along(equations: Equations, law: Any, groups: Groups, direction: Direction, tape: Tape) -> tuple[Equations, Any]:
+    """Return the equations along a path, and the load."""
 
     def moved(value: Numbers, rate: float) -> Any:
-        return value * growth(rate) if rate else value
+        return value * tape.growth(rate) if rate else value
 
     by_speed, by_load, by_roughness = direction
     load = moved(groups.load, by_load)
@@ -135,12 +135,3 @@ def along(
         rate = by_roughness - groups.scaling.roughness_exponent * by_load
         law = replace(law, load=load, decay_length=moved(groups.relative_roughness, rate))
     return replace(equations, speed=moved(groups.speed, by_speed), law=law), load
-
-
-def _observables_of_rows(equations: Equations, y: Array, load: Array) -> Array:
-    """Return the observables of rows of complex unknowns, shape (rows, n)."""
-    found, fields = np.full((len(y), len(ALL_NAMES)), np.nan, complex), equations.fields(y)
-    for name, value in measured(equations, fields, load).items():
-        found[:, ROW[name]] = value[:, 0]
-    found[:, ROW["central_gap"]] = gap_beside(equations.operators.mesh, fields.gap, 0.0)[0]
-    return found

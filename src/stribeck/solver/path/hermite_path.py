@@ -11,12 +11,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array, Flags, Indices
-from stribeck.numerics.continuation import Path, PathProblem
+from stribeck._types import Array, Flags
+from stribeck.numerics.continuation import ReadablePath
 from stribeck.numerics.dual import Dual, value_of
 from stribeck.numerics.hermite import inner_places, slope_noise, weights_through
 from stribeck.numerics.settings import (
@@ -29,7 +29,7 @@ from stribeck.numerics.settings import (
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 
-__all__ = ["HermitePath", "Knot", "KnotProblem"]
+__all__ = ["HermitePath", "Knot"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,41 +44,11 @@ class Knot:
     kind: Any = field(default=None, kw_only=True)  # Where it changes from a state to the next, observables have a kink
 
 
-class KnotProblem(PathProblem, Protocol):
-    """The states of a path."""
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names of the observables."""
-
-    @property
-    def shares(self) -> tuple[int, int]:
-        """Columns of the two load shares, whose sum is one."""
-
-    @property
-    def one_signed(self) -> Flags:
-        """Which observables never change their sign."""
-
-    @property
-    def summands(self) -> tuple[tuple[int, int], ...]:
-        """Columns of an observable of one sign, and of another one that is smoother in the sum of both, if there are any."""
-
-    @property
-    def controlled(self) -> Flags:
-        """Which observables the tolerance holds for."""
-
-    def units(self, s: Array) -> Array:
-        """Return what observables are divided by before they are interpolated, shape (len(s), n)."""
-
-    def scales(self, values: Array, s: Array) -> Array:
-        """Return the scales of the errors of observables at coordinates, shape (len(s), n)."""
-
-
 @dataclass(frozen=True, eq=False)
-class HermitePath(Path):
+class HermitePath(ReadablePath):
     """Solved states along a path, ascending, what lies between them, and how the path ended."""
 
-    problem: Any  # A :class:`KnotProblem`, and what else it offers to who made it
+    problem: Any  # A `LineKnots` or `BallKnots`
     knots: tuple[Knot, ...]
     outcome: Outcome
 
@@ -161,15 +131,6 @@ class HermitePath(Path):
             found += [(after, after + 1)] * (after in kinks)
         return found
 
-    def interpolation_error(self, k: int) -> Array:
-        """Return the error of the interpolation on interval k in units of the scales, over its shape.
-
-        That is the error of the polynomial through two states less, as the whole one shows it, or that by errors of slopes.
-        """
-        # On long intervals the errors of both are alike, so that their difference shows about a half of either.
-        apart, shape = self._apart(k)[:2]
-        return np.asarray((SAFETY**2 * apart / shape).max(axis=0))
-
     def _apart(self, k: int) -> tuple[Array, Array, Array]:
         """Return how far both polynomials of interval k are apart, the shape, and how far errors of states set them apart."""
         left, right = self.coordinates[k : k + 2]
@@ -192,50 +153,31 @@ class HermitePath(Path):
 
     @cached_property
     def _between(self) -> Array:
-        """Errors of the interpolation on all intervals over their shape."""
-        return np.stack([self.interpolation_error(k) for k in range(len(self.knots) - 1)])
+        """Errors of the interpolation on all intervals in units of the scales, over their shape.
 
-    def _evaluated(self, s: Array) -> tuple[Array, Indices, Array]:
-        """Return the observables, the interval of each place, and its part of it."""
+        Each is the error of the polynomial through two states less, as the whole one shows it, or that by errors of slopes.
+        """
+        # On long intervals the errors of both are alike, so that their difference shows about a half of either.
+        parts = (self._apart(k)[:2] for k in range(len(self.knots) - 1))
+        return np.stack([(SAFETY**2 * apart / shape).max(axis=0) for apart, shape in parts])
+
+    def on_interval(self, k: int, s: Any) -> Any:
+        """Return the observables on interval k, at coordinates that may bring their derivatives."""
         if len(self.knots) == 1:
-            alone = self.knots[0].values * self.problem.units(s)
-            return alone, np.zeros(len(s), dtype=int), np.zeros(len(s))
-        where = self._interval_of(s)
-        found: Array = np.empty((len(s), len(self.knots[0].values)))
-        for k in np.unique(where).tolist():
-            mine = where == k
-            found[mine] = self._through(*self._window(k, WINDOW), s[mine])
-        left, right = self.coordinates[where], self.coordinates[where + 1]
-        return found, where, (s - left) / (right - left)
-
-    def smooth(self, s: Any) -> Any:
-        """Return the observables at coordinates that may bring their derivatives, shape (len(s), n)."""
-        if not isinstance(s, Dual) or len(self.knots) == 1:
-            return self._evaluated(value_of(s))[0]
-        where, found = self._interval_of(s.value), np.empty((2, len(s.value), len(self.knots[0].values)))
-        for k in np.unique(where).tolist():
-            mine = where == k
-            here = self._through(*self._window(k, WINDOW), s[mine])
-            found[:, mine] = here.value, here.slope
-        return Dual(*found)
-
-    def _interval_of(self, s: Array) -> Indices:
-        """Return the number of the interval of each coordinate."""
-        return np.clip(np.searchsorted(self.coordinates, s, side="right") - 1, 0, len(self.knots) - 2)
-
-    def around(self, s: float) -> tuple[Knot, Knot]:
-        """Return the solved states on both sides of a coordinate."""
-        k = int(self._interval_of(np.array([s]))[0]) if len(self.knots) > 1 else 0
-        return self.knots[k], self.knots[min(k + 1, len(self.knots) - 1)]
+            return self.knots[0].values * self._units(value_of(s))
+        return self._through(*self._window(k, WINDOW), s)
 
     def at(self, s: Array) -> tuple[Array, Array]:
         """Return the observables at coordinates, and their errors in units of the scales."""
-        found, where, parts = self._evaluated(s)
         if len(self.knots) == 1:
-            return found, np.repeat(self.knots[0].errors[None], len(s), axis=0)
-        errors = _shape(np.clip(parts, 0.0, 1.0))[:, None] * self._between[where]
-        for k in np.unique(where).tolist():
-            errors[where == k] += self._propagated(*self._window(k, WINDOW), s[where == k])
+            return self.smooth(s), np.repeat(self.knots[0].errors[None], len(s), axis=0)
+        found = self.smooth(s)
+        errors = np.empty_like(found)
+        for k, mine in self.pieces(s):
+            left, right = self.coordinates[k : k + 2]
+            parts = np.clip((s[mine] - left) / (right - left), 0.0, 1.0)
+            of_states = self._propagated(*self._window(k, WINDOW), s[mine])
+            errors[mine] = _shape(parts)[:, None] * self._between[k] + of_states
         return found, errors
 
     @property

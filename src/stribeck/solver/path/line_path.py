@@ -213,7 +213,7 @@ class LineProblem(LineStates):
 
 
 def has_formulas(model: Model) -> bool:
-    """Return whether the gradient of a film and its drag are smooth functions that jets and complex numbers pass through."""
+    """Return whether the gradient of a film and its drag are smooth functions that jets pass through."""
     film = model.film
     return (
         model.cavitation is Cavitation.NONE

@@ -5,7 +5,7 @@ coefficients of both.  A step is as long as their radius of convergence allows. 
 that without the highest by more than half the tolerance, a state is solved in between.  The stated error of an observable is
 the larger of those at both ends, plus twice this difference.
 
-Only a :class:`Problem` knows what the states are.
+Only their problem knows what the states are.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array, Flags, Indices
-from stribeck.numerics.continuation import Path, PathProblem
-from stribeck.numerics.dual import Dual, value_of
+from stribeck._types import Array
+from stribeck.numerics.continuation import ReadablePath
+from stribeck.numerics.dual import value_of
 from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite_form, missed_by
 from stribeck.numerics.settings import (
     MAX_DEGREE,
@@ -39,7 +39,7 @@ class Expansion:
     point: Any  # The state, as its problem knows it
     series: Array  # Coefficients of the observables
     logs: Array  # Coefficients of their logarithms; nan where there are none
-    errors: Array  # Estimated errors at the state, in units of the scales of :class:`Problem`
+    errors: Array  # Estimated errors at the state, in units of the scales of the problem
     radius: float  # Estimate of the radius of convergence
 
     @property
@@ -68,39 +68,11 @@ def change_ratio(left: Expansion, right: Expansion) -> float:
     return (right.coordinate - left.coordinate) ** 2 / (left.radius * right.radius)
 
 
-class Problem(PathProblem, Protocol):
-    """The states along a path of Taylor series: how each is solved, scaled, checked and read."""
-
-    @property
-    def controlled(self) -> Flags:
-        """Which observables the tolerance limits."""
-
-    @property
-    def sign_changing(self) -> Flags:
-        """Which observables may cross zero, so that their errors between states are absolute."""
-
-    def scales(self, values: Array, s: Array) -> Array:
-        """Return the scales of the errors of observables at coordinates s, shape (len(s), n)."""
-
-    def checked_error(self, left: Expansion, right: Expansion) -> Array:
-        """Return the scaled error between two expansions that neither of them shows, zero where they surely agree."""
-
-    @property
-    def negligible(self) -> float:
-        """Error in units of the scales that a polynomial for observables without a series may add to theirs."""
-
-    def read_scales(self, values: Array) -> Array:
-        """Return the scales of observables without a series."""
-
-    def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
-        """Return values, errors and columns of observables without a series at parts of an interval."""
-
-
 @dataclass(frozen=True, eq=False)
 class Interval:
     """The observables between two neighbouring expansions."""
 
-    problem: Problem
+    problem: Any
     left: Expansion
     right: Expansion
     before: float = math.inf  # Largest error of the interval of which this is half
@@ -185,96 +157,46 @@ class Interval:
         # Of rounding, or of a film that ruptures, a shorter interval has no less.
         return not self.largest_error > self.before / STEP_GROWTH
 
-    def at(self, parts: Array) -> tuple[Array, Array]:
-        """Return the observables at parts of the interval, and their errors in units of the scales, shape (len(parts), n)."""
-        # Not kept: a cycle would keep all operators until the garbage is collected.
-        return _Pieces([self]).at(np.zeros(len(parts), dtype=int), parts)
-
-
-class _Pieces:
-    """Neighbouring intervals evaluated at many places at once."""
-
-    def __init__(self, intervals: Sequence[Interval]) -> None:
-        self.intervals, self.problem = intervals, intervals[0].problem
-        self.count = intervals[0].left.series.shape[1]
-        self.orders = np.array([one.order for one in intervals])
-        self.degree = max(MAX_DEGREE, 2 * int(self.orders.max()) + 2)
-        self.forms = [one.form for one in intervals]
-        self.interpolation_error = np.stack([one.interpolation_error for one in intervals])
-        with_logs = np.stack([np.isfinite(form[:, self.count :]).all(axis=0) for form in self.forms])
-        self.starts = np.array([one.left.coordinate for one in intervals])
-        self.lengths = np.array([one.length for one in intervals])
-        self.logs = np.nonzero(with_logs.any(axis=0))[0].tolist()
-
-    def _polynomials(self, where: Array, basis: Array) -> Array:
-        """Return the polynomials of numbered intervals, given those of Chebyshev or their derivatives."""
-        found = np.empty((len(basis), 2 * self.count))
-        for k in np.unique(where).tolist() if len(where) > 1 else where.tolist():
-            mine, form = slice(None) if len(where) == 1 else where == k, self.forms[k]
-            found[mine] = basis[mine, : len(form)] @ form
-        return found
-
-    def smooth(self, where: Array, parts: Any) -> tuple[Any, Array, Any]:
-        """Return observables at parts of numbered intervals, their interpolation errors, and the Chebyshev basis."""
-        basis, at = chebyshev_basis(parts, self.degree), value_of(parts)
-        both: Any = self._polynomials(where, value_of(basis))
-        if isinstance(basis, Dual):
-            both = Dual(both, self._polynomials(where, basis.slope))
-        found = both[:, : self.count]
-        missed = self.interpolation_error[where] * ((at * (1 - at)) ** self.orders[where])[:, None]
-        limit = missed / NEGLIGIBLE
-        if (value_of(found) < limit)[:, self.logs].any():
+    def smooth(self, parts: Any) -> tuple[Any, Array, Any]:
+        """Return observables at parts of the interval, their interpolation errors, and the Chebyshev basis."""
+        basis, at, count = chebyshev_basis(parts, max(MAX_DEGREE, len(self.form))), value_of(parts), self.left.series.shape[1]
+        both = basis[:, : len(self.form)] @ self.form
+        found = both[:, :count]
+        missed = self.interpolation_error * ((at * (1 - at)) ** self.order)[:, None]
+        limit, with_logs = missed / NEGLIGIBLE, np.isfinite(self.form[:, count:]).all(axis=0)
+        if (value_of(found) < limit)[:, with_logs].any():
             # A share below its error is interpolated by its logarithm, which keeps sign and digits.
             with np.errstate(all="ignore"):
-                tiny = np.exp(both[:, self.count :])
+                tiny = np.exp(both[:, count:])
                 found = np.where((found < limit) & (tiny < limit), tiny, found)
         return found, missed, basis
 
-    @cached_property
-    def _errors(self) -> tuple[Array, Array]:
-        """Errors of each interval, relative for most observables and absolute for those that may cross zero."""
-        ends, inside = np.stack([one.at_ends for one in self.intervals]), [one.checked_error for one in self.intervals]
-        sign_changing = self.problem.sign_changing
-        return np.where(sign_changing, 0.0, ends[:, 0]) + np.stack(inside), np.where(sign_changing, ends[:, 1], 0.0)
-
-    def at(self, where: Array, parts: Array) -> tuple[Array, Array]:
-        """Return observables at parts of numbered intervals, and their scaled errors."""
-        found, missed, basis = self.smooth(where, parts)
-        scales = self.problem.scales(found, self.starts[where] + parts * self.lengths[where])
-        relative, absolute = self._errors
-        errors = relative[where] + (absolute[where] + missed) / scales
-        for mine, columns, of_read in self.read(found, where, parts, basis):
-            errors[mine, columns] = of_read + self.intervals[where[mine[0, 0]]].checked_error[columns]
-        unknown = np.isnan(found) & self._expected[where]
-        return found, np.where(unknown, np.inf, errors)
-
-    @cached_property
-    def _expected(self) -> Flags:
-        """Which observables exist at both ends of an interval."""
-        return np.stack([np.isfinite([one.left.series[0], one.right.series[0]]).all(axis=0) for one in self.intervals])
-
-    def read(self, found: Array, where: Array, parts: Array, basis: Array) -> list[tuple[Indices, Sequence[int], Array]]:
-        """Write observables without a series into ``found``; return rows and columns of each interval, and errors."""
-        written = []
-        for k in np.unique(where).tolist() if len(where) > 1 else where.tolist():
-            one = self.intervals[k]
-            form, errors, columns, is_smooth = one.read
-            if not len(columns):
-                continue
-            mine = np.nonzero(where == k)[0][:, None]
+    def at(self, parts: Array) -> tuple[Array, Array]:
+        """Return the observables at parts of the interval, and their errors in units of the scales, shape (len(parts), n)."""
+        found, missed, basis = self.smooth(parts)
+        scales, may_vanish = self.problem.scales(found, self.left.coordinate + parts * self.length), self.problem.sign_changing
+        relative, absolute = np.where(may_vanish, 0.0, self.at_ends[0]), np.where(may_vanish, self.at_ends[1], 0.0)
+        errors = relative + self.checked_error + (absolute + missed) / scales
+        form, of_read, columns, is_smooth = self.read
+        if len(columns):
             if is_smooth:
-                found[mine, columns] = basis[mine[:, 0], :MAX_DEGREE] @ form
+                found[:, columns] = basis[:, :MAX_DEGREE] @ form
             else:
-                found[mine, columns], errors, _ = self.problem.read(one.left, one.right, parts[mine[:, 0]])
-            written.append((mine, columns, errors))
-        return written
+                found[:, columns], of_read, _ = self.problem.read(self.left, self.right, parts)
+            errors[:, columns] = of_read + self.checked_error[columns]
+        expected = np.isfinite([self.left.series[0], self.right.series[0]]).all(axis=0)
+        return found, np.where(np.isnan(found) & expected, np.inf, errors)
+
+    def parts(self, s: Any) -> Any:
+        """Return the places of coordinates in the interval."""
+        return (s - self.left.coordinate) / max(self.length, np.finfo(float).tiny)
 
 
 @dataclass(frozen=True, eq=False)
-class SolvedPath(Path):
+class SolvedPath(ReadablePath):
     """The intervals of a path in ascending order, and its outcome."""
 
-    problem: Problem  # What was followed
+    problem: Any  # A `LineProblem`, or what else solves, scales, checks and reads states as that does
     intervals: tuple[Interval, ...]  # Between neighbouring solved states; of a single state, from it to itself
     outcome: Outcome  # CONVERGED if the path reaches the end asked for
 
@@ -309,29 +231,14 @@ class SolvedPath(Path):
         """Return the numbers of the intervals that do not interpolate within the tolerance, and of which half might."""
         return [k for k, one in enumerate(self.intervals) if one.length > 0 and one.is_poor(rtol)]
 
-    @cached_property
-    def _pieces(self) -> _Pieces:
-        return _Pieces(self.intervals)
-
-    def around(self, s: float) -> tuple[Expansion, Expansion]:
-        """Return the solved states on both sides of a coordinate."""
-        interval = self.intervals[int(self._interval_of(np.array([s]))[0])]
-        return interval.left, interval.right
-
-    def _interval_of(self, s: Array) -> Array:
-        """Return the number of the interval of each coordinate."""
-        return np.clip(np.searchsorted(self.coordinates, s, side="right") - 1, 0, len(self.intervals) - 1)
-
-    def _parts(self, s: Any) -> tuple[Array, Any]:
-        """Return the interval of each coordinate, and its place in it."""
-        where = self._interval_of(value_of(s))
-        return where, (s - self._pieces.starts[where]) / np.fmax(self._pieces.lengths[where], np.finfo(float).tiny)
-
-    def smooth(self, s: Any) -> Any:
-        """Return observables with a series, without errors, at coordinates that may bring their derivatives."""
-        return self._pieces.smooth(*self._parts(s))[0]
+    def on_interval(self, k: int, s: Any) -> Any:
+        """Return the observables with a series on interval k, at coordinates that may bring their derivatives."""
+        return self.intervals[k].smooth(self.intervals[k].parts(s))[0]
 
     def at(self, s: Array) -> tuple[Array, Array]:
         """Return the observables at coordinates, shape (len(s), n), and their errors in units of the scales."""
-        where, parts = self._parts(s)
-        return self._pieces.at(where, np.clip(parts, 0.0, 1.0))
+        found, errors = np.empty((2, len(s), len(self.expansions[0].values)))
+        for k, mine in self.pieces(s):
+            parts = np.clip(self.intervals[k].parts(s[mine]), 0.0, 1.0)
+            found[mine], errors[mine] = self.intervals[k].at(parts)
+        return found, errors
