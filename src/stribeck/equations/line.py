@@ -10,7 +10,7 @@ them.  With D the deflection operator, A the running integral and w the quadratu
     R_{N+2} &= \textstyle\sum_j w_j G_j \; s^2
 
 s is a fixed length that makes the last row of order one.  If the gradient G depends on the pressure, the nodal fluid pressure
-is an unknown too, with the rows ``p_f - lambda A G``; Newton's step eliminates it.
+is an unknown too, with the rows ``p_f - lambda A G``.
 
 With a free exit the film ends at x_c, and x is measured from there: D, A and w do not depend on x_c, which enters by the
 undeformed gap alone, of a cylinder ``(x + x_c)**2/2``.  The integrals of G end at the exit, and one more row asks that G
@@ -40,16 +40,10 @@ from stribeck.equations.operators import LOAD, Operators
 from stribeck.fluids.fluid import Cavitation, Film
 from stribeck.numerics.newton import LU, Inverse
 from stribeck.numerics.panels import Mesh
-from stribeck.numerics.running_integral import Volterra
-from stribeck.numerics.settings import HALF_DIGITS
-from stribeck.numerics.trace import Matrix, Operator, Term, Trace, act, mapped, matrix_of, pointwise
+from stribeck.numerics.trace import Matrix, Operator, Trace, act, mapped, matrix_of, pointwise
 from stribeck.quantities.lazy import cached_property
 
-__all__ = ["LOAD", "Coupled", "Eliminated", "Equations", "Operators"]
-
-# Logarithm of the growth of an error in the pressure from the edge of the film to its middle beyond which no integral from
-# there is taken: half of the digits are lost.
-MAX_LOG_GROWTH = -np.log(HALF_DIGITS)
+__all__ = ["LOAD", "Equations", "Operators"]
 
 
 class Fields(NamedTuple):
@@ -253,16 +247,10 @@ class Equations:
 
     def inverse(self, y: Array) -> Inverse:
         """Return the inverse of the Jacobian in :meth:`units` of the unknowns, by LU factors."""
-        if self.film.uses_pressure:
-            eliminated = Eliminated(self, y)
-            return Coupled(self, y) if eliminated.is_stiff else eliminated
         return LU.of(self.jacobian(y, self.units(y)), overwrite=True)
 
     def jacobian(self, y: Array, units: Array | None = None) -> Array:
-        """Return the derivative of the residual in Fortran order, its columns times ``units``; a fluid pressure eliminated."""
-        units = np.ones_like(y) if units is None else units
-        if self.film.uses_pressure:
-            return Eliminated(self, y, units).matrix
+        """Return the derivative of the residual in Fortran order, its columns times ``units``."""
         return dense(self.rows(self.traced(y, units)))
 
     def parameter_derivative(self, y: Array, name: str) -> Array:
@@ -310,78 +298,3 @@ def dense(rows: Fields) -> Array:
             else:
                 block[:, 0] = row.columns.get(other, 0.0)
     return found
-
-
-class Coupled:
-    """The inverse of the Jacobian with the fluid pressure among the unknowns, by LU factors of all of it."""
-
-    def __init__(self, equations: Equations, y: Array) -> None:
-        self.factors = LU.of(dense(equations.rows(equations.traced(y, equations.units(y)))), overwrite=True)
-
-    @property
-    def is_finite(self) -> bool:
-        """Whether the factors are finite."""
-        return self.factors.is_finite
-
-    def __call__(self, residuals: Array) -> Array:
-        """Return ``-J^-1 r`` in units of the unknowns."""
-        return self.factors(residuals)
-
-
-class Eliminated:
-    """The inverse of the Jacobian with the fluid pressure among the unknowns, whose step it eliminates."""
-
-    # The rows p - A g = r of the pressure give its change, dp = (I - A f)^-1 (A dg - r) with f the derivative of g by p: a
-    # trace by the other unknowns, and a part that the residual makes.
-
-    def __init__(self, equations: Equations, y: Array, units: Array | None = None) -> None:
-        self.layout = equations.layout
-        self.units = equations.units(y) if units is None else units
-        self.integral = equations.operators.integral
-        self.u = equations.traced(y, self.units)
-        self.equations, self.rows = equations, equations.rows(self.u)
-        row = self.rows.pressure
-        self.factor = -row.factor("pressure")
-        self.volterra = Volterra(self.integral, self.factor)
-        terms = {"gap": (Term(None, self.volterra, -row.factor("gap")),)}
-        columns = {name: self._resolved(-column) for name, column in row.columns.items()}
-        self.pressure = Trace(self.u.pressure.value, terms, columns)
-
-    @property
-    def is_stiff(self) -> bool:
-        """Whether a pressure that is integrated from one end grows too much, as in a thin compressible film."""
-        # There the flux and the density fix the gap, and the gap the pressure.
-        return bool(np.max(np.abs(self.integral(self.factor))) > MAX_LOG_GROWTH)
-
-    @property
-    def matrix(self) -> Array:
-        """The Jacobian of the other unknowns."""
-        equations, u = self.equations, self.u._replace(pressure=self.pressure)
-        return dense(equations.balances_of(u, self.pressure, equations.gradient(equations.film, u)))
-
-    @cached_property
-    def reduced(self) -> LU:
-        """The factors of :attr:`matrix`."""
-        return LU.of(self.matrix, overwrite=True)
-
-    @property
-    def is_finite(self) -> bool:
-        """Whether the reduced system is finite."""
-        return self.reduced.is_finite
-
-    def _resolved(self, values: Array) -> Array:
-        """Return ``(I - A f)^-1`` of nodal values."""
-        return values + self.volterra(self.factor * values)
-
-    def __call__(self, residuals: Array) -> Array:
-        """Return ``-J^-1 r`` in units of the unknowns."""
-        at = self.layout
-        q = self._resolved(residuals[..., at.pressure])
-        others = [name for name, row in zip(Fields._fields, self.rows, strict=True) if row is not None and name != "pressure"]
-        parts = [residuals[..., getattr(at, name)] - getattr(self.rows, name).along({"pressure": q}) for name in others]
-        step = self.reduced(np.concatenate(parts, axis=-1))
-        found = np.empty_like(residuals)
-        found[..., at.gap], found[..., at.numbers] = step[..., : q.shape[-1]], step[..., q.shape[-1] :]
-        changes = {name: found[..., getattr(at, name)] for name in others}
-        found[..., at.pressure] = self.pressure.along(changes) - q
-        return found

@@ -21,9 +21,8 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.equations.free_edge import FilmBetween, film_between, integral_up_to
-from stribeck.equations.line import Coupled, Equations, Fields
+from stribeck.equations.line import Equations, Fields
 from stribeck.fluids.fluid import Film
-from stribeck.numerics.newton import LU, Inverse
 from stribeck.numerics.panels import Mesh, reference
 from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.numerics.trace import Matrix, Operator, act, value_of
@@ -72,10 +71,6 @@ class Unsteady(Equations):
         """Return the operators from the gradient to the pressure, and to its whole integral, over the film."""
         film = self.between(u, g)
         return super().integral_to_end(u, g) if film is None else (film, film.net)
-
-    def inverse(self, y: Array) -> Inverse:
-        """Return the inverse of the Jacobian in units of the unknowns, by LU factors."""
-        return Coupled(self, y) if self.film.uses_pressure else LU.of(self.jacobian(y, self.units(y)), overwrite=True)
 
 
 def swallowed_up_to(integral: RunningIntegral, place: float) -> Matrix:

@@ -7,8 +7,7 @@ the whole integral vanishes.  With a gap between 0 and an edge ``reformation`` i
 edge and is zero within the gap; with a gap up to infinity it is zero beyond 0.
 
 The matrix A of this integral is never formed: inside a panel it is a block of the order of the panel, from panel to panel a
-running sum.  The same holds for the Volterra equation ``q = A (v + f q)`` with a nodal factor f, whose solution is
-``(I - A f)^-1 A v``.
+running sum.
 """
 
 from __future__ import annotations
@@ -140,81 +139,3 @@ class RunningIntegral:
         for own, block, column in zip(result.reshape(columns.shape), self.blocks, columns, strict=True):
             own += block.T @ column  # panel by panel: another matrix of this size costs more than the products
         return np.asarray(result.T)
-
-
-@dataclass(frozen=True, eq=False)
-class Volterra:
-    """The solution ``q = (I - A f)^-1 A v`` of ``q = A (v + f q)``, for one nodal factor f."""
-
-    integral: RunningIntegral  # A
-    factor: Array  # f at the nodes
-
-    @cached_property
-    def _factor(self) -> Array:
-        return self.factor.reshape(self.integral.mesh.panels, -1)
-
-    @cached_property
-    def _resolved(self) -> Array:
-        """``(I - a f)^-1`` of the block a of each panel."""
-        blocks = self.integral.blocks
-        return np.asarray(np.linalg.inv(np.eye(blocks.shape[-1]) - blocks * self._factor[:, None, :]))
-
-    @cached_property
-    def _own(self) -> Array:
-        """``(I - a f)^-1 a`` of each panel, the same as ``a (I - f a)^-1``: what it does by itself."""
-        return self._resolved @ self.integral.blocks
-
-    @cached_property
-    def _whole(self) -> Array:
-        """Weights of the integral over each panel."""
-        return self.integral.mesh.weights.reshape(self._factor.shape)
-
-    @cached_property
-    def _chains(self) -> list[tuple[Indices, Array, float, Array]]:
-        """Each side of infinity: its panels towards zero, weights and sign of the last panel, and the matrix of sums."""
-        integral = self.integral
-        left, right = integral.tail_weights
-        chains = [(np.arange(integral.middle), left, 1.0)]
-        if not integral.one_sided:
-            chains.append((np.arange(integral.mesh.panels - 2, integral.second - 1, -1), right, -1.0))
-        passed = (self._whole * self._factor * self._resolved.sum(axis=2)).sum(axis=1)
-        found = []
-        for panels, tail, sign in chains:
-            step = np.eye(len(panels))
-            np.fill_diagonal(step[1:], -1.0 - sign * passed[panels[:-1]])
-            found.append((panels, tail, sign, np.asarray(np.linalg.inv(step), dtype=np.float64)))
-        return found
-
-    def __call__(self, values: Array) -> Array:
-        """Return q at the nodes, shape (..., size), of nodal ``values`` v, shape (..., size)."""
-        f = self._factor
-        v = values.reshape(*values.shape[:-1], *f.shape)
-        result = np.matmul(self._own, v[..., None])[..., 0]
-        density = v + f * result
-        added = (density * self._whole).sum(axis=-1)
-        answer = self._resolved.sum(axis=2)  # what a panel makes of one that arrives at its edge
-        for panels, tail, sign, to_edges in self._chains:
-            sources = np.concatenate([(density[..., -1, :] @ tail)[..., None], added[..., panels[:-1]]], axis=-1)
-            arrived = sign * sources @ to_edges.T
-            result[..., panels, :] += arrived[..., None] * answer[panels]
-        return np.asarray(result.reshape(values.shape))
-
-    @property
-    def matrix(self) -> Array:
-        """``(I - A f)^-1 A`` itself, shape (size, size)."""
-        return self.after(np.eye(self.integral.mesh.size))
-
-    def after(self, operator: Array) -> Array:
-        """Return ``operator @ (I - A f)^-1 A``, shape (rows, size)."""
-        f, own = self._factor, self._own
-        nodal = operator.reshape(len(operator), *f.shape).transpose(1, 0, 2)
-        result = np.matmul(nodal, own)
-        felt = (nodal + result * f[:, None, :]).sum(axis=2)
-        passed_on = self._whole[:, None, :] + (self._whole * f)[:, None, :] @ own
-        at_tail = np.zeros((len(operator), f.shape[1]))
-        for panels, tail, sign, to_edges in self._chains:
-            later = to_edges.T @ felt[panels]  # what each panel and those behind it feel of one that arrives
-            result[panels[:-1]] += sign * later[1:, :, None] * passed_on[panels[:-1]]
-            at_tail = at_tail + sign * np.outer(later[0], tail)
-        result[-1] += at_tail @ (np.eye(f.shape[1]) + f[-1][:, None] * own[-1])
-        return np.asarray(result.transpose(1, 0, 2).reshape(operator.shape))

@@ -113,26 +113,6 @@ class Trace(FirstOrder):
             columns[name] = columns[name] + column if name in columns else column
         return Trace(value, terms, columns)
 
-    def factor(self, name: str) -> Any:
-        """Return the factor of a field under the operator that its terms share, without those that have none."""
-        found: Any = 0.0
-        for left, operator, right in self.terms.get(name, ()):
-            if operator is not None:
-                factor = _product(left, right)
-                found = found + (1.0 if factor is None else factor)
-        return found
-
-    def along(self, changes: Mapping[str, Array]) -> Array:
-        """Return the change with that of fields and numbers, each with values of shape (..., nodes)."""
-        found: Any = 0.0
-        for name, change in changes.items():
-            for left, operator, right in self.terms.get(name, ()):
-                term = _product(right, change)
-                found = found + _product(left, term if operator is None else operator(term))
-            if name in self.columns:
-                found = found + self.columns[name] * change
-        return np.asarray(found)
-
 
 Value: TypeAlias = Trace | Array | float
 
