@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.numerics.dual import Dual, value_of
-from stribeck.numerics.settings import INNER_PLACES
+from stribeck.numerics.dual import Dual
+from stribeck.numerics.settings import EPSILON, INNER_PLACES
 
 __all__ = [
     "chebyshev_basis",
@@ -127,23 +127,19 @@ def chebyshev_basis(tau: Any, count: int) -> Any:
 
 def weights_through(nodes: Array, x: Any) -> tuple[Any, Any]:
     """Return the weights of values and slopes at several nodes in the polynomial through them, shape (len(x), len(nodes))."""
+    if isinstance(x, Dual):
+        step = EPSILON**2  # of complex polynomials, whose imaginary part is their slope times that: nothing cancels
+        moved = weights_through(nodes, x.value + 1j * step)
+        along = np.reshape(x.slope, (-1, 1)) / step
+        values, slopes = (Dual(each.real, along * each.imag) for each in moved)
+        return values, slopes
     apart = nodes[:, None] - nodes
     np.fill_diagonal(apart, 1.0)
-    steps = value_of(x)[:, None] - nodes
+    steps = x[:, None] - nodes
     others = [np.delete(np.arange(len(nodes)), j) for j in range(len(nodes))]
     basis = np.stack([np.prod(steps[:, k] / apart[j, k], axis=1) for j, k in enumerate(others)], axis=1)
     bend = np.array([np.sum(1.0 / apart[j, k]) for j, k in enumerate(others)])  # slope of each basis at its own node
-    factor = 1.0 - 2.0 * bend * steps
-    values, slopes = factor * basis**2, steps * basis**2
-    if not isinstance(x, Dual):
-        return values, slopes
-    growth = np.zeros_like(basis)  # of each basis with x
-    for j, k in enumerate(others):
-        for i in k.tolist():
-            rest = k[k != i]
-            growth[:, j] += np.prod(steps[:, rest] / apart[j, rest], axis=1) / apart[j, i]
-    twice, along = 2.0 * basis * growth, np.reshape(x.slope, (-1, 1))
-    return Dual(values, along * (factor * twice - 2.0 * bend * basis**2)), Dual(slopes, along * (basis**2 + steps * twice))
+    return (1.0 - 2.0 * bend * steps) * basis**2, steps * basis**2
 
 
 def slope_noise(nodes: Array, values: Array, slopes: Array, errors: Array, x: Array) -> Array:

@@ -89,11 +89,42 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
     @property
     @abstractmethod
     def x(self) -> Array:
-        """Positions of the nodes along the contact, ascending [a]."""
+        """Positions of the nodes along the contact, of a ball along its middle line, ascending [a]."""
 
     @abstractmethod
     def profile(self, x: Array) -> Profile:
         """Return the fields at positions along the contact [a], in Hertz units."""
+
+    @property
+    @abstractmethod
+    def _along(self) -> Profile:
+        """The fields at :attr:`x`, in Hertz units."""
+
+    @property
+    def gap(self) -> Array:
+        """Gap at :attr:`x` [u_Hz]."""
+        return self._along.gap
+
+    @property
+    def contact_pressure(self) -> Array:
+        """Contact pressure at :attr:`x` [p_Hz]."""
+        return self._along.contact_pressure
+
+    @property
+    def fluid_pressure(self) -> Array:
+        """Fluid pressure at :attr:`x` [p_Hz]; negative behind the contact where the fluid does not cavitate."""
+        return self._along.fluid_pressure
+
+    @property
+    def pressure(self) -> Array:
+        """Total pressure at :attr:`x` [p_Hz]."""
+        return self._along.pressure
+
+    @property
+    def separation(self) -> Array:
+        """Separation ``s = alpha h/h_rms`` at :attr:`x` [-], in which contact laws are given; infinite for smooth surfaces."""
+        kappa = float(self.groups.relative_roughness)
+        return self.gap / kappa if kappa > 0 else np.full_like(self.x, np.inf)
 
     @abstractmethod
     def _viscous(self, beta: float, definition: Definition) -> tuple[float, float]:
@@ -142,7 +173,15 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
     def maximum_pressure(self) -> float:
         """Largest pressure of asperities and fluid together at the nodes along a contact in SI units [Pa]."""
         scale = self._hertz("maximum_pressure").pressure
-        return float(self.profile(self.x).pressure.max()) * scale
+        return float(self.pressure.max()) * scale
+
+    def _scales(self) -> HertzScales:
+        """Return the scales in which fields are given in SI units."""
+        if self.contact is None:
+            raise InputError(
+                "to_si needs the Hertz scales of a contact; solve a LineContact or PointContact instead of Groups."
+            )
+        return self.contact.hertz
 
     def _hertz(self, name: str) -> HertzScales:
         if self.contact is None:

@@ -156,31 +156,11 @@ class Solution(BaseSolution):
         nodes = self.mesh.nodes[self._ordered]
         return np.asarray(nodes) if self.origin == (0.0, 1.0) else exit + cavity_stretch * nodes
 
-    @property
-    def gap(self) -> Array:
-        """Gap at :attr:`x` [u_Hz]."""
-        return np.asarray(self.nodal_gap[self._ordered]) + self.gap_shift
-
-    @property
-    def contact_pressure(self) -> Array:
-        """Contact pressure at :attr:`x` [p_Hz]."""
-        return np.asarray(self._pressures[0][self._ordered])
-
-    @property
-    def fluid_pressure(self) -> Array:
-        """Fluid pressure at :attr:`x` [p_Hz]; negative behind the contact where the fluid does not cavitate."""
-        return np.asarray(self._pressures[1][self._ordered])
-
-    @property
-    def pressure(self) -> Array:
-        """Total pressure at :attr:`x` [p_Hz]."""
-        return self.contact_pressure + self.fluid_pressure
-
-    @property
-    def separation(self) -> Array:
-        """Separation ``s = alpha h/h_rms`` at :attr:`x` [-], in which contact laws are given; infinite for smooth surfaces."""
-        kappa = float(self.groups.relative_roughness)
-        return self.gap / kappa if kappa > 0 else np.full_like(self.x, np.inf)
+    @cached_property
+    def _along(self) -> Profile:
+        contact, fluid = self._pressures
+        at = self._ordered
+        return Profile(self.x, self.nodal_gap[at] + self.gap_shift, np.asarray(contact[at]), np.asarray(fluid[at]))
 
     @property
     def area_fraction(self) -> Array | None:
@@ -273,16 +253,8 @@ class Solution(BaseSolution):
         InputError
             If the solution comes from groups alone, which do not fix the scales.
         """
-        if self.contact is None:
-            raise InputError(
-                "to_si needs the Hertz scales of a contact; solve a LineContact or PointContact instead of Groups."
-            )
-        scales = self.contact.hertz
-        if x is None:
-            p = Profile(self.x, self.gap, self.contact_pressure, self.fluid_pressure)
-        else:
-            p = self.profile(np.asarray(x, dtype=float) / scales.half_width)
-        return p.in_si(scales)
+        scales = self._scales()
+        return (self._along if x is None else self.profile(np.asarray(x, dtype=float) / scales.half_width)).in_si(scales)
 
     def to_dataset(self) -> xarray.Dataset:
         """Return fields and numbers of the state as an xarray Dataset, in SI units where there is a contact.
@@ -298,5 +270,4 @@ class Solution(BaseSolution):
         MissingExtraError
             If xarray is not installed.
         """
-        own = Profile(self.x, self.gap, self.contact_pressure, self.fluid_pressure)
-        return self._with_numbers((own if self.contact is None else self.to_si()).to_dataset())
+        return self._with_numbers((self._along if self.contact is None else self.to_si()).to_dataset())

@@ -89,15 +89,9 @@ def observables(equations: Equations, y: Unknowns) -> dict[str, float]:
 
 def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, float]:
     """Return the finite parts of the friction integrals."""
-    mesh, h, p, speed = equations.operators.mesh, y.gap, y.fluid, equations.speed
-    cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
-    moment = mesh.area_weights * mesh.radii * cos
-    turn = 2.0 * np.pi / mesh.modes
-    radial = turn * mesh.local_weights * mesh.local_radii * mesh.scattered(h * cos) * mesh.radial_derivative(p)
-    tangential = turn * mesh.ring_weights * sin * h * (mesh.angular_derivative @ p)
-    shear = equations.film.shear(mesh, speed, h, p) / h
-    couette = speed / 6.0 * (float((shear @ mesh.area_weights).sum()) - float(mesh.ring_weights @ equations.shear_missing(y)))
-    poiseuille = 0.5 * float(radial.sum() - tangential.sum())
+    mesh, p, speed = equations.operators.mesh, y.fluid, equations.speed
+    moment = mesh.area_weights * mesh.radii * np.cos(mesh.angles)[:, None]
+    couette, poiseuille = (float((mesh.local_weights * each).sum()) for each in on_rings(equations, y))
     of_fluid, of_contact = float((moment * p).sum()), float((moment * contact).sum())
     at_rim = float(mesh.to_modes[1] @ p[:, -1])
     more, first = equations.outside_film, 0.0
@@ -115,6 +109,18 @@ def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, flo
     }
 
 
+def on_rings(equations: Equations, y: Unknowns) -> tuple[Array, Array]:
+    """Return what a ring adds to both friction integrals, over its width, at the nodes of each panel."""
+    mesh, h, p, speed = equations.operators.mesh, y.gap, y.fluid, equations.speed
+    cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
+    turn = 2.0 * np.pi / mesh.modes
+    shear = equations.film.shear(mesh, speed, h, p) / h
+    couette = speed / 6.0 * (turn * mesh.radii * shear.sum(axis=0) - equations.shear_missing(y))
+    along = (mesh.scattered(h * cos) * mesh.radial_derivative(p)).sum(axis=0) * mesh.local_radii
+    poiseuille = 0.5 * turn * (along - mesh.scattered((sin * h * (mesh.angular_derivative @ p)).sum(axis=0)))
+    return mesh.scattered(couette), poiseuille
+
+
 @dataclass(frozen=True, eq=False)
 class FrictionWithin:
     """The friction integrals of a film up to a radius, less those of a fluid that does not thin far away."""
@@ -130,15 +136,10 @@ class FrictionWithin:
     @classmethod
     def of(cls, equations: Equations, y: Unknowns, values: Mapping[str, float]) -> FrictionWithin:
         """Return the friction integrals of a state with these observables."""
-        mesh, h, p, speed = equations.operators.mesh, y.gap, y.fluid, equations.speed
-        cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
-        turn = 2.0 * np.pi / mesh.modes
-        shear = equations.film.shear(mesh, speed, h, p) / h
-        couette = speed / 6.0 * (turn * mesh.radii * shear.sum(axis=0) - equations.shear_missing(y))
-        along = (mesh.scattered(h * cos) * mesh.radial_derivative(p)).sum(axis=0) * mesh.local_radii
-        poiseuille = 0.5 * turn * (along - mesh.scattered((sin * h * (mesh.angular_derivative @ p)).sum(axis=0)))
-        up_to = _running(mesh, np.stack([mesh.scattered(couette), poiseuille]))
-        edge = -turn * mesh.scattered((h * p * cos).sum(axis=0)) * mesh.local_radii
+        mesh, speed = equations.operators.mesh, equations.speed
+        up_to = _running(mesh, np.stack(on_rings(equations, y)))
+        around = (y.gap * y.fluid * np.cos(mesh.angles)[:, None]).sum(axis=0)
+        edge = -2.0 * np.pi / mesh.modes * mesh.scattered(around) * mesh.local_radii
         finite = values["J_couette"], values["J_poiseuille"], equations.far.poiseuille * speed
         running = np.concatenate([up_to, edge[None]])
         return cls(mesh, running, finite, equations.outside_film, y.offset, speed, equations.far)

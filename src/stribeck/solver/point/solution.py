@@ -167,34 +167,8 @@ class PointSolution(BaseSolution):
         return self.state.real_contact_area
 
     @cached_property
-    def _middle(self) -> Profile:
+    def _along(self) -> Profile:
         return self.profile(self.x)
-
-    @property
-    def gap(self) -> Array:
-        """Gap at :attr:`x` on the middle line [u_Hz]."""
-        return self._middle.gap
-
-    @property
-    def contact_pressure(self) -> Array:
-        """Contact pressure at :attr:`x` on the middle line [p_Hz]."""
-        return self._middle.contact_pressure
-
-    @property
-    def fluid_pressure(self) -> Array:
-        """Fluid pressure at :attr:`x` on the middle line [p_Hz]; negative behind the contact unless the film breaks there."""
-        return self._middle.fluid_pressure
-
-    @property
-    def pressure(self) -> Array:
-        """Total pressure at :attr:`x` on the middle line [p_Hz]."""
-        return self._middle.pressure
-
-    @property
-    def separation(self) -> Array:
-        """Separation ``s = alpha h/h_rms`` at :attr:`x` on the middle line [-]; infinite for smooth surfaces."""
-        kappa = float(self.groups.relative_roughness)
-        return self.gap / kappa if kappa > 0 else np.full_like(self.x, np.inf)
 
     def profile(self, x: Array) -> Profile:
         """Return the fields along the middle line.
@@ -269,16 +243,11 @@ class PointSolution(BaseSolution):
         InputError
             If the solution comes from groups alone, which do not fix the scales.
         """
-        scales = self._scales("to_si")
+        scales = self._scales()
         a = scales.half_width
         if y is not None:
             return self.field(real_array("x", 0.0 if x is None else x) / a, real_array("y", y) / a).in_si(scales)
-        return (self._middle if x is None else self.profile(real_array("x", x) / a)).in_si(scales)
-
-    def _scales(self, what: str) -> Any:
-        if self.contact is None:
-            raise InputError(f"{what} needs the Hertz scales of a contact; solve a PointContact instead of Groups.")
-        return self.contact.hertz
+        return (self._along if x is None else self.profile(real_array("x", x) / a)).in_si(scales)
 
     def to_dataset(self, *, points: int = 161, reach: float = 2.0) -> xarray.Dataset:
         """Return the fields on a square around the contact as an xarray Dataset.
