@@ -32,8 +32,7 @@ from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.cavities.system import CavitatedSystem
 from stribeck.equations.film import closed_gap
 from stribeck.equations.point.mesh_choice import Resolution
-from stribeck.equations.point.minimum import reach_of
-from stribeck.equations.point.observables import SMOOTH, observables
+from stribeck.equations.point.observables import SMOOTH, observables, reach_of
 from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.settings import (
     KINKED_FLOOR,

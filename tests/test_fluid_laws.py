@@ -10,7 +10,7 @@ from scipy.integrate import quad, solve_bvp
 from scipy.optimize import brentq
 
 import stribeck as sb
-from stribeck.equations.thinning.column import column
+from stribeck.equations.point.column import column
 from stribeck.fluids import (
     Barus,
     Carreau,

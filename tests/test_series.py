@@ -15,8 +15,7 @@ from stribeck.numerics.hermite import (
     slope_noise,
     weights_through,
 )
-from stribeck.numerics.jets import Tape, polynomial
-from stribeck.numerics.series import beyond, implicit_series, radius
+from stribeck.numerics.series import Tape, beyond, implicit_series, polynomial, radius
 
 pytestmark = pytest.mark.quick
 

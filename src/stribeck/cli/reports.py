@@ -19,9 +19,8 @@ from stribeck.quantities.results import table_lines
 from stribeck.quantities.units import InputError, show
 from stribeck.regimes.levers import strongest_lever
 from stribeck.regimes.sentences import answer_sentence, regime_sentence, step_text, ways_to
-from stribeck.solver.about import constant_groups
 from stribeck.solver.base_solution import BaseSolution
-from stribeck.solver.numbers import main_rows, report_rows
+from stribeck.solver.numbers import constant_groups, main_rows, report_rows
 
 if TYPE_CHECKING:
     from stribeck.cases.case import Case

@@ -21,7 +21,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.exponential import ExponentialLaw, NoContact
 from stribeck.contact_laws.law import AsperityLaw, ContactLaw, as_asperity_law
 from stribeck.numerics.hermite import chebyshev_form
-from stribeck.numerics.jets import polynomial
+from stribeck.numerics.series import polynomial
 from stribeck.numerics.trace import Trace, mapped
 from stribeck.quantities.registry import laws_of
 from stribeck.quantities.schema import made_of

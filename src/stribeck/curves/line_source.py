@@ -22,7 +22,7 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES
 from stribeck.solver.at_rest import with_positive_gap
-from stribeck.solver.path.line_states import COLUMNS, POSITION
+from stribeck.solver.path.line_knots import COLUMNS, POSITION
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, minimum_estimate, solution_of, state_notes

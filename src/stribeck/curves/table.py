@@ -12,8 +12,7 @@ from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.friction_rules import RULES
 from stribeck.files.results import Labelled
 from stribeck.quantities.outputs import COLUMNS, GROUPS, OUTPUT_TABLES, friction_rows
-from stribeck.solver.about import about_problem, problem_attributes
-from stribeck.solver.numbers import columns_of_states
+from stribeck.solver.numbers import about_problem, columns_of_states, problem_attributes
 
 __all__ = ["curve_dict", "curve_table", "marks_of"]
 

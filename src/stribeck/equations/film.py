@@ -9,8 +9,8 @@ import numpy as np
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.fluids.fluid import Decay, Film
-from stribeck.numerics.jets import Jet
 from stribeck.numerics.running_integral import RunningIntegral
+from stribeck.numerics.series import Jet
 from stribeck.numerics.trace import Trace, pointwise, value_of
 
 __all__ = ["NODAL", "Nodes", "at_nodes", "closed_gap", "decay_of", "gradient_in_film", "is_rough", "is_thinning", "jump_of"]

@@ -11,8 +11,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.groups import Groups
 from stribeck.equations.film import closed_gap, decay_of, is_rough, is_thinning, jump_of
-from stribeck.equations.guess import Guess
-from stribeck.equations.state import State
+from stribeck.equations.state import Guess, State
 from stribeck.fluids.fluid import Cavitation, Film
 from stribeck.numerics.newton import root_between
 from stribeck.numerics.panels import Mesh, adapt, base_edges, graded, highest_degree, reference

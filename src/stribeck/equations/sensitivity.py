@@ -16,9 +16,8 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.model import Model
-from stribeck.equations.observables import ROW, changes, measured
+from stribeck.equations.observables import ROW, area_derivatives, changes, measured
 from stribeck.equations.operators import Operators
-from stribeck.equations.real_area import area_derivatives
 from stribeck.equations.state import State
 from stribeck.numerics.trace import Trace
 from stribeck.quantities.outputs import ALL_NAMES, AREA

@@ -1,4 +1,4 @@
-"""Discrete states: the unknowns on a mesh, and Newton's iteration that finds them.
+"""Discrete states: the unknowns on a mesh, guesses of them, and Newton's iteration that finds them.
 
 A state knows its groups, its equations and the Newton iteration that made it.  Between meshes the logarithm of the
 gap over ``scale**2 + x**2``, which is smooth and bounded on the whole line, and the fluid pressure are interpolated.
@@ -7,7 +7,9 @@ gap over ``scale**2 + x**2``, which is smooth and bounded on the whole line, and
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -16,13 +18,14 @@ from stribeck._types import Array
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.film import is_thinning
 from stribeck.equations.gap import minimum_gap
-from stribeck.equations.guess import Guess
 from stribeck.equations.line import Equations, Operators
+from stribeck.numerics.continuation import steady_weights
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
 from stribeck.numerics.panels import Mesh, reference
 from stribeck.numerics.settings import (
     COARSE_STEP,
     HALF_DIGITS,
+    MAX_AMPLIFICATION,
     MAX_STEPS,
     NEGLIGIBLE,
     ROUNDING,
@@ -30,6 +33,41 @@ from stribeck.numerics.settings import (
 )
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
+
+
+class Guess(Protocol):
+    """A guessed state, on the whole line."""
+
+    @property
+    def flux_gap(self) -> float:
+        """Guess of the flux gap."""
+
+    @property
+    def offset(self) -> float:
+        """Guess of the offset."""
+
+    @property
+    def exit(self) -> float:
+        """Guess of the exit, from which x is measured if the film has a free one."""
+
+    @property
+    def cavity_stretch(self) -> float:
+        """Guess of stretch of the cavity, one if the film does not re-form."""
+
+    @property
+    def reformation(self) -> float:
+        """Coordinate at which the film re-forms; infinite if it does not."""
+
+    @property
+    def minimum_position(self) -> float:
+        """Approximate position of the minimum gap."""
+
+    def log_gap(self, mesh: Mesh) -> Array:
+        """Return the logarithm of the gap at the nodes of ``mesh``."""
+
+    def fields(self, x: Array) -> Array:
+        """Return the logarithm of the gap and, if known, the fluid pressure at ``x``, shape (1 or 2, len(x))."""
+
 
 # Gap from which rounding is more than the steps by which coarse states are found [u_Hz].
 MIN_GAP = ROUNDING / COARSE_STEP
@@ -223,3 +261,96 @@ def solve_state(
     with np.errstate(all="ignore"):  # a root that was not found need not be finite
         error = float(np.abs(start[gap] / root.x[gap] - 1).max())
     return State(groups, equations, root.x, root, error)
+
+
+@dataclass(frozen=True, eq=False)
+class Extrapolation:
+    """A guess from the states before it along a path."""
+
+    weights: Array
+    states: Sequence[State]
+
+    @property
+    def flux_gap(self) -> float:
+        """Extrapolated in its logarithm, or as it is if it is not positive everywhere."""
+        if min(s.flux_gap for s in self.states) <= 0:
+            return float(sum(w * s.flux_gap for w, s in zip(self.weights, self.states, strict=True)))
+        return math.exp(sum(w * math.log(s.flux_gap) for w, s in zip(self.weights, self.states, strict=True)))
+
+    @property
+    def offset(self) -> float:
+        """Offset of the last state: Newton's first step corrects it exactly."""
+        return self.states[-1].offset
+
+    @cached_property
+    def exit(self) -> float:
+        """Extrapolated as it is."""
+        return float(sum(w * s.exit for w, s in zip(self.weights, self.states, strict=True)))
+
+    @cached_property
+    def _in_place(self) -> bool:
+        """Whether gaps are extrapolated at fixed places of the contact."""
+        # The edge of a contact of asperities, and a kink of the shape, stay where they are while the exit moves through them.
+        before, last = self.states[-2:]
+        if not last.equations.operators.has_exit:
+            return False
+        if last.equations.operators.model.profile.places.size:
+            return True
+        x = last.mesh.nodes
+        in_frame, in_place = (
+            np.abs(before.fields(at)[0] - last.log_gap(last.mesh)).max()
+            for at in (self._in_frame(before, x), _at_place(last, before, x))
+        )
+        return bool(in_place < in_frame)
+
+    @property
+    def reformation(self) -> float:
+        """Edge of the last state's mesh at which the film re-forms."""
+        return self.states[-1].reformation
+
+    @property
+    def cavity_stretch(self) -> float:
+        """Stretch of the cavity, extrapolated in its logarithm."""
+        if self.reformation == math.inf:
+            return 1.0
+        lengths = [math.log(s.cavity_stretch * s.reformation) for s in self.states]
+        return math.exp(sum(w * length for w, length in zip(self.weights, lengths, strict=True))) / self.reformation
+
+    @property
+    def minimum_position(self) -> float:
+        """Position of the minimum gap of the last state."""
+        return self.states[-1].minimum_position
+
+    def log_gap(self, mesh: Mesh) -> Array:
+        """Return the logarithm of the gap at the nodes of ``mesh``."""
+        if self._in_place or any(s.reformation != self.reformation for s in self.states):
+            return np.asarray(self.fields(mesh.nodes)[0])
+        log_gap = np.zeros(mesh.size)
+        for w, s in zip(self.weights, self.states, strict=True):
+            log_gap += w * s.log_gap(mesh)
+        return log_gap
+
+    def fields(self, x: Array) -> Array:
+        """Return the logarithm of the gap and the fluid pressure at ``x``."""
+        fields = np.zeros((2, x.size))
+        for w, s in zip(self.weights, self.states, strict=True):
+            fields += w * s.fields(self._in_frame(s, x))
+        if self._in_place:  # the pressure has kinks where the film ends and begins
+            fields[0] = sum(w * s.fields(_at_place(self, s, x))[0] for w, s in zip(self.weights, self.states, strict=True))
+        return fields
+
+    def _in_frame(self, state: State, x: Array) -> Array:
+        """Return coordinates in the frame of a state whose cavity may have another length on its mesh."""
+        return x if state.reformation == self.reformation else x * (state.reformation / self.reformation)
+
+
+def _at_place(one: Guess, other: Guess, x: Array) -> Array:
+    """Return the coordinates in the frame of another film of the places in the contact that ``x`` are in the frame of one."""
+    return (one.exit + one.cavity_stretch * x - other.exit) / other.cavity_stretch
+
+
+def extrapolate(history: Sequence[tuple[float, State]], s: float) -> Guess:
+    """Return the guess at coordinate ``s`` by the highest polynomial through ``history`` that does not amplify errors."""
+    weights = steady_weights([c for c, _ in history], s, MAX_AMPLIFICATION)
+    states = [state for _, state in history[len(history) - len(weights) :]]
+    return Extrapolation(weights, states) if len(states) > 1 else states[0]

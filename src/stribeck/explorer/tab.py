@@ -30,7 +30,7 @@ from stribeck.explorer.table import without_rtol
 from stribeck.explorer.uploads import MEANINGS, SCAN_ENDINGS, Measured, Scan, fit_measured, free_inputs, read_file, with_scan
 from stribeck.files.writing import MissingExtraError
 from stribeck.fits.measurements import CHANGE_READ
-from stribeck.numerics.ending import ended_by
+from stribeck.numerics.newton import ended_by
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve_error import SolveError
 

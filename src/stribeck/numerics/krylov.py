@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.numerics.ending import go_on
+from stribeck.numerics.newton import go_on
 
 Apply = Callable[[Array], Array]
 

@@ -12,12 +12,17 @@ the tolerance the last factorisation is spared. With ``chord`` such steps are al
 
 Source: [Deuflhard 2011] Newton Methods for Nonlinear Problems (affine-covariant Newton: the step, not the
 residual, measures the error; simplified Newton).
+
+Work that is no longer wanted ends between the steps of iterations, by what the caller of the work raises there: see
+:func:`ended_by`.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -26,9 +31,27 @@ import numpy.typing as npt
 from scipy.linalg import lapack
 
 from stribeck._types import Array
-from stribeck.numerics.ending import go_on
 from stribeck.numerics.settings import COARSE_STEP, HALF_DIGITS, MAX_STEPS, NEGLIGIBLE, STEP_GROWTH
 from stribeck.quantities.outcome import Outcome
+
+_WATCH: ContextVar[Callable[[], object] | None] = ContextVar("watch", default=None)
+
+
+@contextmanager
+def ended_by(watch: Callable[[], object]) -> Iterator[None]:
+    """Let all iterations of this thread call ``watch`` at each step."""
+    before = _WATCH.set(watch)
+    try:
+        yield
+    finally:
+        _WATCH.reset(before)
+
+
+def go_on() -> None:
+    """Call the watch of this thread, if there is one."""
+    watch = _WATCH.get()
+    if watch is not None:
+        watch()
 
 
 class Inverse(Protocol):

@@ -18,7 +18,7 @@ import numpy as np
 
 from stribeck._types import Array, Numbers
 from stribeck.numerics.dual import Dual, FirstOrder, chained, value_of
-from stribeck.numerics.jets import Jet
+from stribeck.numerics.series import Jet
 
 __all__ = ["Matrix", "Operator", "Trace", "Value", "act", "mapped", "matrix_of", "pointwise", "value_of"]
 

@@ -26,7 +26,7 @@ from stribeck.files.datasets import Column, new_dataset
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import COLUMNS, GROUPS, LINE
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.about import input_attributes
+from stribeck.solver.numbers import input_attributes
 from stribeck.solver.solve import as_groups, with_law
 
 if TYPE_CHECKING:

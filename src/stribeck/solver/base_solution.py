@@ -24,9 +24,8 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import COLUMNS, OUTPUT_TABLES, OutputTable
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError
-from stribeck.solver.about import about_problem, constant_groups, problem_attributes
 from stribeck.solver.fields import Profile
-from stribeck.solver.numbers import main_rows, numbers_of
+from stribeck.solver.numbers import about_problem, constant_groups, main_rows, numbers_of, problem_attributes
 
 if TYPE_CHECKING:
     import xarray

@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, error_estimate
-from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.mesh_choice import halvings_for, mesh_for
 from stribeck.equations.observables import Observables, observables
-from stribeck.equations.state import State, solve_state
+from stribeck.equations.state import Guess, State, solve_state
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.numerics.settings import MAX_REFINEMENTS, NEGLIGIBLE, ROUNDING, SAFETY, SHARE

@@ -15,8 +15,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, Friction, sliding_part
 from stribeck.contacts.groups import Groups
 from stribeck.equations.gap import gap_at
-from stribeck.equations.observables import Observables, drag_parts
-from stribeck.equations.real_area import real_area
+from stribeck.equations.observables import Observables, drag_parts, real_area
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property

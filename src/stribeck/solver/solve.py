@@ -32,8 +32,7 @@ from stribeck.quantities.units import InputError, show
 from stribeck.solids import hertz
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solver.at_rest import with_positive_gap
-from stribeck.solver.cavities.cavity_length import path_to_cavity
-from stribeck.solver.cold_start import first_path, is_lost_to_rounding
+from stribeck.solver.cold_start import first_path, is_lost_to_rounding, path_to_cavity
 from stribeck.solver.refinement import RefinedState, converge, order_for
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve_error import SolveError, describe

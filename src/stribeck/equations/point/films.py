@@ -4,7 +4,7 @@ r"""The film of a ball: its flow in the plane under a pressure gradient and the 
     M = \frac{\rho \, \phi \, h^3}{\eta}, \quad C = \rho \, (h + s S)
 
 in Hertz units, with viscosity, density and flow factors as functions of pressure and gap; M is the same in all directions.
-A fluid that thins has an M that depends on the gradient too (:mod:`stribeck.equations.thinning`): equations use
+A fluid that thins has an M that depends on the gradient too (:mod:`stribeck.equations.point.planes`): equations use
 the fluxes and their derivatives only, whatever the law.
 """
 

@@ -1,39 +1,223 @@
-"""States of the line along a path whose film and law are formulas: solved from a prediction, verified, and expanded."""
+"""States of the line along a path whose film and law are formulas: solved from a prediction, verified, and expanded.
+
+The unknowns of a series are those of the equations, with the logarithm of the gap.  The residual is evaluated on jets, see
+:mod:`stribeck.numerics.series`; a contact law is a polynomial around each separation.  One factorisation serves all orders,
+and the observables are jets of the same unknowns.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from stribeck._types import Array
+from stribeck._types import Array, Numbers
+from stribeck.contact_laws.exponential import ExponentialLaw
 from stribeck.contact_laws.law import is_exponential
-from stribeck.contact_laws.scaled import misfit
+from stribeck.contact_laws.scaled import ContinuedLaw, ScaledLaw, misfit
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import Model
-from stribeck.equations.line import Equations
-from stribeck.equations.observables import ROW
+from stribeck.equations.error_estimate import FineOperators
+from stribeck.equations.gap import gap_beside, minimum_gaps
+from stribeck.equations.line import Equations, Fields
+from stribeck.equations.observables import ROW, measured
 from stribeck.equations.state import State
 from stribeck.fluids.fluid import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.rheology.viscosity import Barus, Constant, DowsonHigginson, Incompressible, Roelands
-from stribeck.numerics.newton import Root
-from stribeck.numerics.series import beyond, radius
+from stribeck.numerics.hermite import hermite_weights, missed_by
+from stribeck.numerics.newton import Inverse, Root
+from stribeck.numerics.panels import interpolation_error
+from stribeck.numerics.series import Jet, Tape, beyond, implicit_series, radius
 from stribeck.numerics.settings import COEFFICIENT_NOISE, MAX_DEGREE, NEGLIGIBLE, SAFETY
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import NAMES
+from stribeck.quantities.outputs import ALL_NAMES, NAMES
 from stribeck.solver.at_rest import shift_along, with_positive_gap
-from stribeck.solver.path.expansion import Direction, Expanded, expand, from_logs
-from stribeck.solver.path.interpolation import LinePoint, between, minimum_between
-from stribeck.solver.path.line_knots import LineKnots
-from stribeck.solver.path.line_states import POSITION, LineStates, numbers_of
+from stribeck.solver.path.line_knots import POSITION, LineKnots, LineStates, numbers_of
 from stribeck.solver.path.line_steps import LineSteps
-from stribeck.solver.path.path import Expansion, SolvedPath
+from stribeck.solver.path.path import Expansion, SolvedPath, change_ratio
 from stribeck.solver.refinement import RefinedState
 
-__all__ = ["LineProblem", "line_problem"]
+Direction = tuple[float, float, float]  # Derivatives of ln(speed), ln(load), ln(roughness) along a curve
+
+
+class Expanded(NamedTuple):
+    """Taylor coefficients about a state, order by order in the first axis."""
+
+    unknowns: Array  # Coefficients of the unknowns, with the logarithm of the gap
+    observables: Array
+    logs: Array  # Of logarithms of observables; nan where there are none
+
+
+def from_logs(equations: Equations, w: Array) -> Array:
+    """Return the unknowns from a row that holds the logarithm of the gap."""
+    found = w.copy()
+    with np.errstate(over="ignore"):  # a prediction out of bounds shows in its gap
+        found[..., equations.layout.gap] = np.exp(w[..., equations.layout.gap])
+    return found
+
+
+class _Known(NamedTuple):
+    """A contact law by its pressure at the gaps where it is asked for."""
+
+    values: Any
+
+    def pressure(self, gap: Any) -> Any:
+        """Return the contact pressure."""
+        return self.values
+
+
+def expand(
+    equations: Equations, y: Array, inverse: Inverse, groups: Groups, direction: Direction, shifts: Array, order: int
+) -> Expanded:
+    """Return the series of a state and of its observables; at rest ``shifts`` is the series of the shift of its gap."""
+    at, law = equations.layout, contact_law(groups)
+    w, units = np.zeros((order + 1, at.size)), equations.units(y)
+    w[0], units[at.gap] = y, 1.0
+    w[0, at.gap] = np.log(y[at.gap])
+    if isinstance(law, ScaledLaw):
+        near: Any = ContinuedLaw.of(law.shape, y[at.gap] / law.decay_length)
+        law = replace(law, shape=near)
+    tape = Tape(order)
+    here, load = _along(equations, law, groups, direction, tape)
+    u = Fields(*(None if part is None else tape.given(part) for part in equations.fields(w)))
+    u = u._replace(gap=np.exp(u.gap))
+    known: Any = _Known(here.contact(u.gap))
+    here = replace(here, law=known)
+    _write_series(w, tape, here, u, lambda r: units * inverse(r))
+    values, logs = np.full((2, order + 1, len(ALL_NAMES)), np.nan)
+    found = _observed(here, u, load, None if equations.is_sliding else tape.given(shifts[:, None]))
+    for name, value in found.items():
+        values[:, ROW[name]] = value.coefficients[:, 0]
+    share = found["contact_load_share"]
+    if share.value > 0:
+        logs[:, ROW["contact_load_share"]] = np.log(share).coefficients[:, 0]
+    return Expanded(w, values, logs)
+
+
+def _write_series(w: Array, tape: Tape, equations: Equations, u: Fields, inverse: Callable[[Array], Array]) -> None:
+    """Write the series of the unknowns, whose jets are ``u``."""
+    at, rows = equations.layout, equations.rows(u)
+    blocks = [(getattr(at, name), row) for name, row in zip(Fields._fields, rows, strict=True) if row is not None]
+    tape.keep(row for _, row in blocks)
+    found = np.empty(at.size)
+
+    def coefficient(k: int) -> Array:
+        tape.fill(k)
+        for block, row in blocks:
+            found[block] = row.coefficients[k]
+        return found
+
+    implicit_series(w, coefficient, inverse, refines=True)
+    tape.settle()
+    tape.made.clear()  # what is made of these jets from now on has its coefficients at once
+
+
+def _observed(equations: Equations, u: Fields, load: Any, shift: Jet | None) -> dict[str, Any]:
+    """Return the jets of the observables but for the minimum gap, whose place moves; at rest all gaps have a shift."""
+    found = {name: value for name, value in measured(equations, u, load).items() if isinstance(value, Jet)}
+    found["central_gap"] = gap_beside(equations.operators.mesh, u.gap, 0.0)[0]
+    if shift is None:
+        return found
+    found |= {name: found[name] + shift for name in ("central_gap", "offset")}
+    found["minimum_gap"] = found["central_gap"]
+    gap, weights = u.gap + shift, equations.operators.mesh.weights
+    if np.all(gap.value > 0):
+        found["flux_gap"] = (gap**-2.0 @ weights) / (gap**-3.0 @ weights)
+    else:
+        del found["flux_gap"]
+    return found
+
+
+def _along(equations: Equations, law: Any, groups: Groups, direction: Direction, tape: Tape) -> tuple[Equations, Any]:
+    """Return the equations along a path, and the load."""
+
+    def moved(value: Numbers, rate: float) -> Any:
+        return value * tape.growth(rate) if rate else value
+
+    by_speed, by_load, by_roughness = direction
+    load = moved(groups.load, by_load)
+    if isinstance(law, ExponentialLaw | ScaledLaw):
+        rate = by_roughness - groups.scaling.roughness_exponent * by_load
+        law = replace(law, load=load, decay_length=moved(groups.relative_roughness, rate))
+    return replace(equations, speed=moved(groups.speed, by_speed), law=law), load
+
+
+class LinePoint(NamedTuple):
+    """A solved state, the coefficients of its unknowns, and the operators of its mesh."""
+
+    refined: RefinedState
+    state: State
+    unknowns: Array
+    fine: FineOperators
+
+
+def minimum_between(left: Expansion, right: Expansion, of: LinePoint, parts: Array) -> tuple[Array, Array]:
+    """Return minimum gap and position between two expansions on the mesh of one, and the error of the gap."""
+    order, mesh, ends = min(left.order, right.order), of.state.mesh, (left, right)
+    weights, scaled = hermite_weights(order, parts), _scaled(left, right, order)
+    a, b = (_gaps_on(end.point, each, of)[:, : -mesh.order] for end, each in zip(ends, scaled, strict=True))
+    with np.errstate(over="ignore"):  # a gap beyond all numbers is no minimum: its interval is halved
+        place, lowest, error, panel = minimum_gaps(mesh, weights[0] @ a + weights[1] @ b)
+    on_panels = missed_by(order, np.vstack([a, b]), change_ratio(left, right)).reshape(-1, mesh.order).max(axis=1)
+    error = error + on_panels[panel] * (parts * (1 - parts)) ** order
+    for end, each, w in zip(ends, scaled, weights, strict=True):
+        if end.point.state.mesh is not mesh:  # values from another mesh were interpolated
+            error = error + 2 * _unresolved(end.point, each, w, place)
+    return np.stack([lowest, place]), error
+
+
+def _unresolved(point: LinePoint, coefficients: Array, weights: Array, places: Array) -> Array:
+    """Return the interpolation error of logarithms of gaps at places on the mesh of a point."""
+    mesh = point.state.mesh
+    shapes = coefficients[:, point.state.equations.layout.gap].copy()
+    shapes[0] -= np.log(mesh.far)
+    own = shapes.reshape(len(shapes), mesh.panels, mesh.order)[:, mesh.locate(places)[0]]
+    return interpolation_error(np.einsum("rj,jrn->rn", weights, own))
+
+
+def between(left: Expansion, right: Expansion, of: LinePoint, parts: Array) -> Array:
+    """Return the unknowns between two expansions on the mesh of one of them, with the logarithms of gaps."""
+    order = min(left.order, right.order)
+    a, b = (_on_mesh(end.point, each, of) for end, each in zip((left, right), _scaled(left, right, order), strict=True))
+    of_left, of_right = hermite_weights(order, parts)
+    return np.asarray(of_left @ a + of_right @ b)
+
+
+def _scaled(left: Expansion, right: Expansion, order: int) -> list[Array]:
+    """Return the coefficients of the unknowns at both ends, scaled to an interval of length one."""
+    scale = (right.coordinate - left.coordinate) ** np.arange(order + 1.0)[:, None]
+    return [end.point.unknowns[: order + 1] * scale for end in (left, right)]
+
+
+def _on_mesh(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
+    """Return coefficients of the unknowns of a point on the mesh of another."""
+    mesh, other = point.state.mesh, of.state.mesh
+    if mesh is other:
+        return coefficients
+    at, there = point.state.equations.layout, of.state.equations.layout
+    found = np.empty((len(coefficients), there.size))
+    found[:, there.numbers] = coefficients[:, at.numbers]
+    found[:, there.gap] = _gaps_on(point, coefficients, of)
+    if there.pressure.stop > there.pressure.start:
+        found[:, there.pressure] = mesh.interpolate(coefficients[:, at.pressure], other.nodes)
+    return found
+
+
+def _gaps_on(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
+    """Return the coefficients of the log gap on another point's mesh."""
+    mesh, nodes, at = point.state.mesh, of.state.mesh.nodes, point.state.equations.layout
+    if mesh is of.state.mesh:
+        return coefficients[:, at.gap]
+    shapes = coefficients[:, at.gap].copy()
+    shapes[0] -= np.log(mesh.far)
+    found = mesh.interpolate(shapes, nodes)
+    found[0] += np.log(mesh.scale**2 + nodes**2)
+    return found
+
 
 READ_COLUMNS = [ROW["minimum_gap"], POSITION]
 SERIES_COLUMNS = [ROW[name] for name in NAMES if name != "minimum_gap"]

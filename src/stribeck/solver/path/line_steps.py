@@ -14,13 +14,10 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.equations.error_estimate import FineOperators, gap_is_resolved
-from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
-from stribeck.equations.observables import ROW
-from stribeck.equations.prediction import extrapolate
-from stribeck.equations.real_area import area_of_state
+from stribeck.equations.observables import ROW, area_of_state
 from stribeck.equations.sensitivity import Change, log_derivatives
-from stribeck.equations.state import State, solve_state
+from stribeck.equations.state import Guess, State, extrapolate, solve_state
 from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.newton import Inverse
 from stribeck.numerics.settings import MAX_BYTES, NEGLIGIBLE, SHARE, STEP_GROWTH

@@ -11,8 +11,7 @@ from stribeck._types import Array
 from stribeck.contacts.model import Model
 from stribeck.equations.cavities.system import CavitatedSystem
 from stribeck.equations.film import closed_gap
-from stribeck.equations.point.minimum import reach_of
-from stribeck.equations.point.observables import MINIMA, identity_error, observables
+from stribeck.equations.point.observables import MINIMA, identity_error, observables, reach_of
 from stribeck.numerics.settings import (
     NEAR_MINIMUM,
     NEGLIGIBLE,

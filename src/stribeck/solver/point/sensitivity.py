@@ -17,7 +17,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.groups import Groups, contact_law
-from stribeck.equations.cavities.capacitance import Capacitance
+from stribeck.equations.cavities.active_set import Capacitance
 from stribeck.equations.cavities.system import CavitatedLinear
 from stribeck.equations.point.observables import observables
 from stribeck.equations.point.planes import plane_of

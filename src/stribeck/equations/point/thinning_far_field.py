@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.equations.thinning.column import column, mean_wall_stress
+from stribeck.equations.point.column import column, mean_wall_stress
 from stribeck.fluids.laws import RateLaw
 from stribeck.numerics.fourier_panels import radau
 from stribeck.numerics.settings import HALF_DIGITS, LEAST_DEGREE, MAX_STEPS, NEGLIGIBLE, SAFETY
