@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass, replace
 
 from stribeck.contacts.groups import Groups, contact_law
-from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, error_estimate
+from stribeck.equations.enriched import FineOperators
+from stribeck.equations.error_estimate import ErrorEstimate, error_estimate
 from stribeck.equations.line import Operators
 from stribeck.equations.mesh_choice import halvings_for, mesh_for
 from stribeck.equations.observables import Observables, observables

@@ -19,7 +19,7 @@ from stribeck.contact_laws.law import is_exponential
 from stribeck.contact_laws.scaled import ContinuedLaw, ScaledLaw, misfit
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import Model
-from stribeck.equations.error_estimate import FineOperators
+from stribeck.equations.enriched import FineOperators
 from stribeck.equations.gap import gap_beside, minimum_gaps
 from stribeck.equations.line import Equations, Fields
 from stribeck.equations.observables import ROW, measured

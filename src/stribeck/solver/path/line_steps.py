@@ -13,7 +13,8 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
-from stribeck.equations.error_estimate import FineOperators, gap_is_resolved
+from stribeck.equations.enriched import FineOperators
+from stribeck.equations.error_estimate import gap_is_resolved
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import ROW, area_of_state
 from stribeck.equations.sensitivity import Change, log_derivatives

@@ -114,7 +114,7 @@ class Interval:
     @cached_property
     def checked_error(self) -> Array:
         """Error that neither end shows."""
-        return self.problem.checked_error(self.left, self.right)
+        return np.asarray(self.problem.checked_error(self.left, self.right))
 
     @cached_property
     def read(self) -> tuple[Array, Array, Sequence[int], bool]:
