@@ -91,7 +91,7 @@ def expand(
     values, logs = np.full((2, order + 1, len(ALL_NAMES)), np.nan)
     found = _observed(here, u, load, None if equations.is_sliding else tape.given(shifts[:, None]))
     for name, value in found.items():
-        values[:, ROW[name]] = value.coefficients[:, 0]
+        values[:, ROW[name]] = value.coefficients[:, 0] if isinstance(value, Jet) else 0.0  # without a film there is no drag
     share = found["contact_load_share"]
     if share.value > 0:
         logs[:, ROW["contact_load_share"]] = np.log(share).coefficients[:, 0]
@@ -118,7 +118,7 @@ def _write_series(w: Array, tape: Tape, equations: Equations, u: Fields, inverse
 
 def _observed(equations: Equations, u: Fields, load: Any, shift: Jet | None) -> dict[str, Any]:
     """Return the jets of the observables but for the minimum gap, whose place moves; at rest all gaps have a shift."""
-    found = {name: value for name, value in measured(equations, u, load).items() if isinstance(value, Jet)}
+    found = measured(equations, u, load)
     found["central_gap"] = gap_beside(equations.operators.mesh, u.gap, 0.0)[0]
     if shift is None:
         return found
