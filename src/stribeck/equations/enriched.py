@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -97,38 +97,28 @@ class FineOperators:
 class EnrichedOperators(Operators):
     """The operators of equations whose pressures are known at the finer nodes: their rows are those of the mesh."""
 
-    fine: FineOperators | None = None
+    fine: FineOperators = field(kw_only=True)
 
     @classmethod
     def of(cls, operators: Operators, fine: FineOperators) -> EnrichedOperators:
         """Return those of a mesh and a model, with the deflection that the mesh has already."""
-        found = cls(operators.mesh, operators.model, fine)
+        found = cls(operators.mesh, operators.model, fine=fine)
         vars(found).update(deflection=operators.deflection)
         return found
 
     @cached_property
-    def finer(self) -> FineOperators:
-        """The finer nodes."""
-        return FineOperators(self.mesh) if self.fine is None else self.fine
-
-    @cached_property
     def integral(self) -> RunningIntegral:
         """Finer nodal pressure gradients -> pressure there."""
-        return self.finer.integral(self.reformation)
+        return self.fine.integral(self.reformation)
 
-    @cached_property
-    def weights(self) -> Array:
-        """Weights of the integral of finer pressures over the whole line."""
-        mesh = self.finer.mesh
-        if self.tail is None:
-            return mesh.weights
-        found, own = mesh.weights.copy(), slice(-mesh.order, None)
-        found[own] = (self.tail.weights @ self.tail.interpolation(mesh.order)) * mesh.stretch[own]
-        return found
+    @property
+    def pressed(self) -> Mesh:
+        """The finer nodes, where pressures are known."""
+        return self.fine.mesh
 
     def by_kernel(self, pressure: Any, d: Any) -> Any:
         """Return the deflection under finer pressure, over the cavity stretch, without its logarithm."""
-        mesh = self.finer.mesh
+        mesh = self.fine.mesh
         if self.deflection_by_tail is not None and self.tail is not None:
             own = slice(-mesh.order, None)
             density = (pressure[own] * mesh.stretch[own]) @ self.tail.interpolation(mesh.order).T
@@ -138,7 +128,7 @@ class EnrichedOperators(Operators):
         return self._by_degrees(pressure, d)
 
     def _by_degrees(self, pressure: Array, d: Any) -> Array:
-        fine = self.finer
+        fine = self.fine
         density = (pressure * fine.mesh.stretch).reshape(fine.mesh.panels, -1)
         highest = density @ reference(fine.mesh.order).to_legendre[fine.coarse.order :].T
         return np.asarray(super().by_kernel(fine.lowered(pressure), d) + fine.of_highest @ highest.ravel())

@@ -71,11 +71,6 @@ class Operators:
         """One at the nodes of the cavity, zero at others."""
         return np.where(self.integral.outside_gap, 0.0, 1.0)
 
-    @property
-    def cavity_pressure(self) -> Array:
-        """The pressure of the cavity at its nodes, zero at others."""
-        return self.in_cavity * self.model.cavity_pressure
-
     @cached_property
     def tail(self) -> HalfTail | None:
         """Half of the panel through infinity, if the film does not reach infinity on the other side."""
@@ -87,13 +82,19 @@ class Operators:
         known = self.tail is not None and isinstance(self.model.solid, HalfPlane)
         return deflection_by_half_tail(self.tail) if known and self.tail is not None else None
 
+    @property
+    def pressed(self) -> Mesh:
+        """Where pressures are known."""
+        return self.mesh
+
     @cached_property
     def weights(self) -> Array:
         """Weights of the integral of a pressure over the whole line."""
+        mesh = self.pressed
         if self.tail is None:
-            return self.mesh.weights
-        found, order = self.mesh.weights.copy(), self.mesh.order
-        found[-order:] = (self.tail.weights @ self.tail.interpolation(order)) * self.mesh.stretch[-order:]
+            return mesh.weights
+        found, own = mesh.weights.copy(), slice(-mesh.order, None)
+        found[own] = (self.tail.weights @ self.tail.interpolation(mesh.order)) * mesh.stretch[own]
         return found
 
     @cached_property
@@ -105,11 +106,6 @@ class Operators:
             of_density = self.deflection_by_tail @ self.tail.interpolation(order)
             found[:, -order:] = of_density * self.mesh.stretch[-order:]
         return found
-
-    @property
-    def deflection_of_gradient(self) -> Array:
-        """D A: nodal pressure gradients -> deflection."""
-        return self.deflecting.of(self.integral).matrix
 
     @cached_property
     def parabola(self) -> Array:

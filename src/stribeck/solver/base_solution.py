@@ -34,25 +34,7 @@ __all__ = ["BaseSolution", "Profile", "regime_of_state"]
 
 
 class BaseSolution(Exported, Shown, ByValue, ABC):
-    """One solved state; see the solution of a geometry for its fields.
-
-    Attributes
-    ----------
-    groups : Groups
-        The state that was solved.
-    contact : Contact or None
-        The contact in SI units it came from.
-    outcome : Outcome
-        How the solve ended; its value is a sentence.
-    notes : tuple of str
-        What to know before using the numbers, one sentence each.
-    rtol : float
-        The relative tolerance asked for.
-    law : str
-        Name of the contact law.
-    observables : object
-        The observables as one object, in Hertz units; they are attributes of the solution too.
-    """
+    """One solved state; see the solution of a geometry for its fields."""
 
     groups: Groups
     contact: Contact | None
