@@ -159,9 +159,8 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
     def _scales(self) -> HertzScales:
         """Return the scales in which fields are given in SI units."""
         if self.contact is None:
-            raise InputError(
-                "to_si needs the Hertz scales of a contact; solve a LineContact or PointContact instead of Groups."
-            )
+            kinds = "PointContact" if self.groups.geometry == "point" else "LineContact or PointContact"
+            raise InputError(f"to_si needs the Hertz scales of a contact; solve a {kinds} instead of Groups.")
         return self.contact.hertz
 
     def _hertz(self, name: str) -> HertzScales:
