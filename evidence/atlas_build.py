@@ -40,7 +40,7 @@ from stribeck.atlas.tables import TABLES, TableRow
 
 # Modules that make the states of a table; by the hash of these and of all that they import a build knows which lines it kept
 # are its own.
-SOLVER_MODULES = ("solver.cold_start", "solver.path.corrector", "solver.refinement", "solver.at_rest")
+SOLVER_MODULES = ("solver.solve", "solver.point.solve")
 
 # Packages whose code changes the numbers
 NUMERIC_PACKAGES = {"contact_laws", "contacts", "equations", "fluids", "numerics", "solids", "solver"}
@@ -218,7 +218,7 @@ def main() -> None:
     """Build tables from the command line."""
     parser = argparse.ArgumentParser(description="Make tables of stribeck.atlas from solved states.")
     parser.add_argument("names", nargs="*", default=[TABLES[0].name], help=f"of {', '.join(ROWS)}")
-    parser.add_argument("--target", type=Path, default=Path(__file__).parents[1] / "atlas", help="the folder to write into")
+    parser.add_argument("--target", type=Path, default=Path(stribeck.__file__).parent / "atlas", help="the folder to write into")
     parser.add_argument("--folder", type=Path, default=Path("build") / "atlas", help="where finished lines are kept")
     parser.add_argument("--workers", type=int, default=2, help="processes")
     arguments = parser.parse_args()
