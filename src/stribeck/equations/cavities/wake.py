@@ -52,10 +52,28 @@ def rupture_line(mesh: PolarMesh, gap: Array, fluid: Array) -> Rupture | None:
     angles = mesh.angles[last + 1] - back * (np.pi / mesh.modes)
     coefficients = mesh.to_modes @ np.log(gap[:, rings])
     log_gap = (np.cos(np.outer(np.arange(mesh.modes), angles)) * coefficients).sum(axis=0)
-    distances = mesh.radii[rings] * np.sin(angles)
+    between, log_between = _between_rings(mesh, gap, fluid)
+    distances = np.append(mesh.radii[rings] * np.sin(angles), between)
     order = np.argsort(distances, kind="stable")
-    gaps = np.exp(log_gap) / (1.0 + distances**2)
-    return Rupture(rings, angles, np.append(0.0, distances[order]), np.append(gaps[order][:1], gaps[order]))
+    distances = distances[order]
+    gaps = np.exp(np.append(log_gap, log_between)[order]) / (1.0 + distances**2)
+    return Rupture(rings, angles, np.append(0.0, distances), np.append(gaps[:1], gaps))
+
+
+def _between_rings(mesh: PolarMesh, gap: Array, fluid: Array) -> tuple[Array, Array]:
+    """Return distances from the middle line, and logarithms of gaps, where the line passes from one ring to the next."""
+    # Behind a slow contact the line follows its edge, a circle, so that no ring crosses it but at the sides.
+    film = fluid > 0.0
+    ends = film[:, :-2] & film[:, 1:-1] & ~film[:, 2:]
+    columns = np.flatnonzero(ends.any(axis=1))
+    last = 1 + np.argmax(ends[columns], axis=1)
+    inner, outer = np.sqrt(fluid[columns, last - 1]), np.sqrt(fluid[columns, last])
+    width = mesh.radii[last + 1] - mesh.radii[last]
+    with np.errstate(all="ignore"):  # the root of the pressure falls evenly to zero
+        beyond = outer / (inner - outer) * (mesh.radii[last] - mesh.radii[last - 1]) / width
+    part = np.where(inner > outer, np.minimum(beyond, 1.0), 1.0)
+    log_gap = (1.0 - part) * np.log(gap[columns, last]) + part * np.log(gap[columns, last + 1])
+    return (mesh.radii[last] + part * width) * np.sin(mesh.angles[columns]), log_gap
 
 
 def shear_missing(
