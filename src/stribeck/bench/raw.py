@@ -22,7 +22,7 @@ from stribeck.fits.table.correlated import FEWEST, errors_of_means
 from stribeck.fits.table.rig import MADE_FRICTION, column_of, measured, prepared, temperatures
 from stribeck.fits.table.stated import inputs_said
 from stribeck.fits.table.strokes import without_codes
-from stribeck.fits.table.values import LARGEST_FRICTION, Values
+from stribeck.fits.table.values import LARGEST_FRICTION, checked, numbers
 from stribeck.quantities.formats import format_error, format_si
 from stribeck.quantities.units import InputError, show
 
@@ -89,9 +89,10 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
         )
     speed_name, friction_name = columns["speed"][0], columns["friction"][0]
     table = without_codes(table, speed_name, [friction_name])
-    values = Values(table, settings)
-    speed, friction = (values.numbers(name, meaning) for name, meaning in ((speed_name, "speed"), (friction_name, "friction")))
-    stated = values.numbers(columns["error"][0], "error") if "error" in columns else None
+    speed, friction = (
+        numbers(table, name, meaning, settings) for name, meaning in ((speed_name, "speed"), (friction_name, "friction"))
+    )
+    stated = numbers(table, columns["error"][0], "error", settings) if "error" in columns else None
     time, timed, time_note = _time(table, table.header.index(run) if run else None)
     warm = temperatures(table)
     there = np.isfinite(speed) & np.isfinite(friction) & np.isfinite(time)
@@ -110,7 +111,7 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
             f"{table.path}: column {show(friction_name)}: a friction coefficient of {np.median(np.abs(friction[there])):.3g} "
             'is not plausible; if it is in percent, write [%] in the header or friction = "%" in [fit.units].'
         )
-    curve, curves = _curves(table, columns, values, settings)
+    curve, curves = _curves(table, columns, settings)
     labels = table.column(run) if run else ()
     kept = np.flatnonzero(there)
     parts = [f"{show(names[0])} as {meaning.replace('_', ' ')}" for meaning, names in columns.items() if names[0] in written]
@@ -158,8 +159,7 @@ def _uses_coefficient(table: TextTable, settings: FitSettings) -> bool:
     if "friction" in settings.columns or force is None or load is None:
         return True
     columns = columns_of(table, settings)
-    values = Values(table, settings)
-    given = values.numbers(columns["friction"][0], "friction")
+    given = numbers(table, columns["friction"][0], "friction", settings)
     with np.errstate(divide="ignore", invalid="ignore"):
         found = np.abs(force / load)
         apart = np.abs(found / np.abs(given) - 1)
@@ -192,7 +192,7 @@ def _zero_of_force(table: TextTable, settings: FitSettings) -> tuple[TextTable, 
     if not apart.any() or apart.all():
         return table, None
     force = measured(table, "friction_force", settings)
-    numbers = np.array(table.numbers, float)
+    of_rows = np.array(table.numbers, float)
     shorter = _only(table, ~apart)
     force = np.full(len(sizes), np.nan) if force is None else force
     stretches = [each[np.isfinite(force[each])] for each in _stretches(apart)]
@@ -212,7 +212,7 @@ def _zero_of_force(table: TextTable, settings: FitSettings) -> tuple[TextTable, 
         else ""
     )
     said = f"Zero of the force by {int(apart.sum())} rows without load: {texts}, taken off{drift}."
-    return shorter, _Zero(np.array([float(numbers[each].mean()) for each in stretches]), means, said)
+    return shorter, _Zero(np.array([float(of_rows[each].mean()) for each in stretches]), means, said)
 
 
 def _stretches(rows: Flags) -> list[Indices]:
@@ -303,12 +303,12 @@ def _going_on(table: TextTable, name: str, time: Array, step: int | None) -> Arr
 
 
 def _curves(
-    table: TextTable, columns: dict[str, list[str]], values: Values, settings: FitSettings
+    table: TextTable, columns: dict[str, list[str]], settings: FitSettings
 ) -> tuple[Indices, tuple[tuple[str, dict[str, float]], ...]]:
     """Return the curve of each row, and name and inputs of each curve."""
     given = [name for name in columns if name in settings.inputs.quantities and name not in ("speed", "boundary_friction")]
     labels = table.column(columns["curve"][0]) if "curve" in columns else ("",) * len(table.rows)
-    series = {name: values.checked(columns[name][0], name) for name in given}
+    series = {name: checked(table, columns[name][0], name, settings) for name in given}
     keys: dict[tuple[str, tuple[tuple[str, float], ...]], int] = {}
     found = []
     last: dict[str, float] = {}

@@ -20,12 +20,12 @@ from stribeck.files.results import Exported, Labelled
 from stribeck.files.table_reading import read_table
 from stribeck.files.text_table import TextTable
 from stribeck.files.writing import PathLike, path_of
-from stribeck.fits.table.columns import Abscissa, abscissa_of, columns_of, has_column, known_name, with_errors_named
+from stribeck.fits.table.columns import abscissa_of, columns_of, has_column, known_name, with_errors_named
 from stribeck.fits.table.repeats import Row, average_repeats
 from stribeck.fits.table.rig import prepared, temperature_note
 from stribeck.fits.table.stated import inputs_said
 from stribeck.fits.table.strokes import without_stops
-from stribeck.fits.table.values import Values
+from stribeck.fits.table.values import Abscissa, checked
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.results import ByValue, Shown
 from stribeck.quantities.units import InputError, show
@@ -105,17 +105,16 @@ def read_file(path: PathLike, settings: FitSettings) -> Measurements:
     against = abscissa_of(table, columns, settings)
     abscissa: Abscissa = "hersey_number" if against == "hersey_per_length" else against
     table = without_stops(table, columns[abscissa][0], columns["friction"], settings)
-    reader = Values(table, settings)
     rows: list[Row] = []
     runs: list[str] = []
     empty: list[int] = []
     frictions = columns["friction"]
     given = [name for name in columns if name in settings.inputs.quantities and name not in ("speed", "boundary_friction")]
-    places = reader.checked(columns[abscissa][0], abscissa)
+    places = checked(table, columns[abscissa][0], abscissa, settings)
     labels = table.column(columns["curve"][0]) if "curve" in columns else [""] * len(places)
-    series = {name: reader.checked(columns[name][0], name) for name in given}
-    measured = {name: reader.checked(name, "friction") for name in frictions}
-    errors = reader.checked(columns["error"][0], "error") if "error" in columns else np.ones(len(places))
+    series = {name: checked(table, columns[name][0], name, settings) for name in given}
+    measured = {name: checked(table, name, "friction", settings) for name in frictions}
+    errors = checked(table, columns["error"][0], "error", settings) if "error" in columns else np.ones(len(places))
     of_runs = table.column(run) if run else [""] * len(places)
     for i, number in enumerate(table.numbers):
         inputs = {name: float(values[i]) for name, values in series.items()}

@@ -5,26 +5,19 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.geometries import LINE
-from stribeck.files.cells import is_called, is_named, normalised_header, number_of, split_header
+from stribeck.files.cells import is_named, normalised_header, number_of, split_header
 from stribeck.files.columns import BARE, has_dimension
 from stribeck.files.text_table import TextTable, as_comparable
-from stribeck.fits.table.rig import MADE_FRICTION, MADE_RATIO, MADE_SPEED, PATTERNS, RIG, is_mean_of_time, is_set
+from stribeck.fits.table.rig import MADE_FRICTION, MADE_RATIO, MADE_SPEED, PATTERNS, RIG, is_mean_of_time
+from stribeck.fits.table.values import ABSCISSAS, Abscissa, dimension_of, is_set, listed, named_in_case, undeclared, unit_in
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["ABSCISSAS", "Abscissa", "abscissa_of", "columns_of", "has_column", "known_name", "with_errors_named"]
-
-Abscissa = Literal["speed", "speed_viscosity", "hersey_number", "hersey_per_length"]
-
-ABSCISSAS: tuple[Abscissa, ...] = ("speed", "speed_viscosity", "hersey_number")
-
-# Dimension of what a column may hold beside inputs of the contact.
-DIMENSION = {"speed": "speed", "speed_viscosity": "drag", "hersey_number": "number", "friction": "number", "error": "number"}
+__all__ = ["abscissa_of", "columns_of", "has_column", "known_name", "with_errors_named"]
 
 # Headers of a speed that say that it is the sum.
 SUMS = {"sum of speeds", "sum of the speeds", "sum of the surface speeds", "u1 u2"}
@@ -97,22 +90,14 @@ def with_errors_named(table: TextTable) -> TextTable:
 def columns_of(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
     """Return what is in the file -> headers of its columns."""
     found: dict[str, list[str]] = {}
-    for meaning, wanted in settings.columns.items():
-        texts = wanted if isinstance(wanted, list) else [wanted]
+    for meaning in settings.columns:
         if meaning in RIG:
             continue
-        for text in texts:
-            same = [name for name in table.header if is_called(name, text)]
-            if meaning == "error" and not same:  # one of several of a name: that of friction
-                same = [name for name in table.header if name.endswith(f" {text}") and is_named(name, WORDS["error"])]
-            if not same:
-                raise InputError(
-                    f"{table.path}: {_listed(table)}, none called {show(text)}, which [fit.columns] has as {meaning}."
-                )
-            _refuse_twice(table, same, meaning)
+        found[meaning] = named_in_case(table, settings, meaning, WORDS["error"])
+        for name in found[meaning]:
+            _refuse_twice(table, [name], meaning)
             if meaning in (*ABSCISSAS, "friction"):
-                _refuse_logarithm(table, same[0], meaning)
-            found.setdefault(meaning, []).append(same[0])
+                _refuse_logarithm(table, name, meaning)
     for meaning in WORDS:
         if meaning in settings.columns or meaning == "error":
             continue
@@ -135,7 +120,7 @@ def columns_of(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
 
 def _candidates(table: TextTable, settings: FitSettings, meaning: str) -> list[str]:
     """Return the columns that may be meant: of the plainest names, and of a fitting unit if there are such."""
-    free = [name for name in table.header if name and not _declared(name, settings)]
+    free = undeclared(table, settings)
     if meaning != "error":
         free = [name for name in free if not _LOGARITHM.search(name)]
     for pattern in (WORDS[meaning], *([OTHER_SPEED] if meaning == "speed" else [])):
@@ -165,10 +150,10 @@ def _counts_rows(table: TextTable, name: str) -> bool:
 
 def _fits(table: TextTable, name: str, meaning: str, settings: FitSettings) -> bool:
     """Return whether a column has a unit of what it may mean, or none."""
-    unit = settings.units.get(meaning) or table.unit(name)
+    unit = unit_in(table, name, meaning, settings)
     if not unit or meaning == "curve":
         return True
-    dimension = DIMENSION.get(meaning) or settings.inputs.quantities[meaning].dimension
+    dimension = dimension_of(meaning, settings)
     if meaning == "hersey_number" and has_dimension(unit, "wavenumber"):
         return True
     return unit in BARE if dimension == "number" else has_dimension(unit, dimension)
@@ -240,7 +225,7 @@ def _ask_for_columns(table: TextTable, found: dict[str, list[str]]) -> None:
         forces = [name for name in table.written if _is_force(name)]
         if forces:
             raise InputError(
-                f"{table.path}: {_listed(table)}, none of which is a friction coefficient; a force is none: add a column "
+                f"{table.path}: {listed(table)}, none of which is a friction coefficient; a force is none: add a column "
                 "friction, the friction force over the normal force."
             )
     units = ""
@@ -254,7 +239,7 @@ def _ask_for_columns(table: TextTable, found: dict[str, list[str]]) -> None:
         examples["friction"] = [several]
     sure = [f"{name} = {show(examples[name][0])}" for name in missing if len(examples[name]) == 1]
     raise InputError(
-        f"{table.path}: {_listed(table)}, none of which is known as {' or '.join(missing)}; say which in [fit.columns] of "
+        f"{table.path}: {listed(table)}, none of which is known as {' or '.join(missing)}; say which in [fit.columns] of "
         f"the case{', as in ' if sure else ''}{' and '.join(sure)}{units}."
     )
 
@@ -277,10 +262,6 @@ def _may_be_friction(table: TextTable, name: str) -> bool:
     return bool(2 * there.size > len(values) and several and (there > 0).any())
 
 
-def _listed(table: TextTable) -> str:
-    return f"the columns are {', '.join(map(show, table.written))} (separated by {table.separator}s)"
-
-
 def abscissa_of(table: TextTable, columns: dict[str, list[str]], settings: FitSettings) -> Abscissa:
     """Return what friction was measured against; the speed where there are several."""
     there = [name for name in ABSCISSAS if name in columns]
@@ -295,7 +276,7 @@ def abscissa_of(table: TextTable, columns: dict[str, list[str]], settings: FitSe
 
 def _hersey(table: TextTable, name: str, settings: FitSettings) -> Abscissa:
     """Return which Hersey number a column holds: that of a ball without the radius is per length."""
-    unit = settings.units.get("hersey_number") or table.unit(name)
+    unit = unit_in(table, name, "hersey_number", settings)
     ball = settings.geometry == "point"
     if has_dimension(unit or "-", "wavenumber"):
         if ball:
@@ -347,9 +328,3 @@ def has_column(table: TextTable, settings: FitSettings, meaning: str) -> bool:
         for name in _candidates(table, settings, each)
         if not (rolls and is_named(name, PATTERNS["sliding_speed"]))
     )
-
-
-def _declared(name: str, settings: FitSettings) -> bool:
-    """Return whether the settings say what a column is."""
-    texts = [text for wanted in settings.columns.values() for text in np.atleast_1d(wanted).tolist()]
-    return any(is_called(name, text) for text in texts)

@@ -16,10 +16,11 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import is_called, is_named, normalised_header, number_of
-from stribeck.files.columns import BARE, has_dimension, si_factor, stated_in
+from stribeck.files.cells import is_named, normalised_header, number_of
+from stribeck.files.columns import has_dimension, si_factor, stated_in
 from stribeck.files.text_table import TextTable
 from stribeck.fits.table.correlated import FEWEST
+from stribeck.fits.table.values import dimension_of, is_set, named_in_case, numbers, undeclared, unit_in
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["MADE_FRICTION", "MADE_SPEED", "RIG", "column_of", "measured", "prepared", "temperature_note", "temperatures"]
@@ -29,6 +30,8 @@ RIG = (
     *("entrainment_speed", "sliding_speed", "surface_speeds", "slide_to_roll", "rotation"),
     *("friction_force", "normal_force", "torque", "run"),
 )
+
+UNITLESS = ("slide_to_roll", "run")  # Those without a unit, but for per cent
 
 FORCES = frozenset({"friction_force", "torque"})
 SPEEDS = frozenset({"entrainment_speed", "sliding_speed", "surface_speeds", "rotation"})  # What friction and speed are made of
@@ -59,19 +62,6 @@ TRACK = (
 )
 
 ARM = r"(?:(?:torque|lever|moment|force|friction) )?arm(?: length)?|hebelarm"  # Names of the arm of a torque
-
-# Dimension of what a rig writes; a column of another one is something else.
-DIMENSIONS_OF = {
-    "entrainment_speed": "speed",
-    "sliding_speed": "speed",
-    "surface_speeds": "speed",
-    "friction_force": "force",
-    "normal_force": "force",
-    "rotation": "rotation",
-    "torque": "torque",
-}
-
-UNITS = {"speed": "mm/s", "force": "N", "rotation": "rpm", "torque": "mN m"}  # Units of examples
 
 MADE_SPEED = "sum of speeds [m/s]"  # Header of the column of the speed that was made of others
 
@@ -169,7 +159,7 @@ def _levelled(
     table: TextTable, name: str, meaning: str, made: str, settings: FitSettings
 ) -> tuple[TextTable, tuple[str, ...]]:
     """Return the table with a column of the values to which a measured column was set, and a sentence if there are several."""
-    values = _ratios(table, name, settings) if meaning == "slide_to_roll" else _numbers(table, name, meaning, settings)
+    values = numbers(table, name, meaning, settings)
     if name == MADE_RATIO or np.isinf(values).any():
         return table, ()
     # Pure rolling is a setting; a load of zero is no contact.
@@ -208,24 +198,13 @@ def _levels(values: Array) -> Array:
 
 def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
     """Return what is in the table -> headers of its columns; those of the settings first, set values after measured ones."""
-    found: dict[str, list[str]] = {}
-    declared = set()
-    for meaning, wanted in settings.columns.items():
-        texts = wanted if isinstance(wanted, list) else [wanted]
-        declared |= {name for name in table.header for text in texts if is_called(name, text)}
-        if meaning in RIG:
-            found[meaning] = [name for name in table.header if any(is_called(name, text) for text in texts)]
-            if not found[meaning]:
-                raise InputError(
-                    f"{table.path}: the columns are {', '.join(map(show, table.written))}, none called "
-                    f"{show(' or '.join(texts))}, which [fit.columns] has as {meaning}."
-                )
-    for name in filter(None, dict.fromkeys(table.header)):
+    found = {meaning: named_in_case(table, settings, meaning) for meaning in settings.columns if meaning in RIG}
+    for name in dict.fromkeys(undeclared(table, settings)):
         for meaning, pattern in PATTERNS.items():
-            if name in declared or meaning in settings.columns or not is_named(name, pattern):
+            if meaning in settings.columns or not is_named(name, pattern):
                 continue
             unit = unit_in(table, name, meaning, settings)
-            if meaning in DIMENSIONS_OF and unit and not has_dimension(unit, DIMENSIONS_OF[meaning]):
+            if meaning not in UNITLESS and unit and not has_dimension(unit, dimension_of(meaning, settings)):
                 continue
             if meaning == "run" and table.unit(name):
                 continue  # a stroke in mm
@@ -240,11 +219,6 @@ def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]
     return found
 
 
-def is_set(name: str) -> bool:
-    """Return whether a column holds what was asked of the rig and not what it measured."""
-    return re.search(r"\b(?:nominal|set|target)\b", normalised_header(name)) is not None
-
-
 def is_mean_of_time(table: TextTable, name: str, settings: FitSettings) -> bool:
     """Return whether a column called mean speed is a mean of samples, as other columns of the table are."""
     if settings.rolls or re.search("entrain|rolling", normalised_header(name)):
@@ -253,17 +227,6 @@ def is_mean_of_time(table: TextTable, name: str, settings: FitSettings) -> bool:
     return not any(re.fullmatch(PATTERNS["slide_to_roll"], each) for each in words) and any(
         re.search(r"\b(?:mean|average|avg)\b", each) and not re.search(_SPEED, each) for each in words
     )
-
-
-def unit_in(table: TextTable, name: str, meaning: str, settings: FitSettings) -> str:
-    """Return the unit of a column: that of [fit.units], or as the file has it; one that is called RPM needs none."""
-    unit = settings.units.get(meaning)
-    if meaning == "normal_force" and normalised_header(name) == MADE_LOAD:
-        unit = unit or settings.units.get(MADE_LOAD)
-    unit = unit or table.unit(name)
-    if not unit and DIMENSIONS_OF.get(meaning) == "speed":
-        unit = settings.units.get("speed", "")
-    return "rpm" if meaning == "rotation" and not unit and normalised_header(name) == "rpm" else unit
 
 
 def _rounded(value: float) -> float:
@@ -281,7 +244,7 @@ def column_of(table: TextTable, meaning: str, settings: FitSettings) -> str:
 def measured(table: TextTable, meaning: str, settings: FitSettings) -> Array | None:
     """Return the numbers [SI] of a column of a rig, such as its normal force; None where there is none with a unit."""
     name = column_of(table, meaning, settings)
-    return _numbers(table, name, meaning, settings) if name else None
+    return numbers(table, name, meaning, settings) if name else None
 
 
 def temperatures(table: TextTable) -> tuple[Array, str] | None:
@@ -303,7 +266,7 @@ def _friction(table: TextTable, found: dict[str, list[str]], settings: FitSettin
             if stated is None:
                 return None
             value, number, name = stated
-            values = _numbers(table, force, "friction_force", settings) / value
+            values = numbers(table, force, "friction_force", settings) / value
             said = f"friction = |{show(force)}| / {value:g} N, {show(name)} of row {number}"
             return values if signed else np.abs(values), said
         normal = found["normal_force"][0]
@@ -312,7 +275,7 @@ def _friction(table: TextTable, found: dict[str, list[str]], settings: FitSettin
             tangential, pressing = (table.numbers_of(name, lambda unit, where: 1.0) for name in (force, normal))
         else:
             tangential, pressing = (
-                _numbers(table, name, meaning, settings)
+                numbers(table, name, meaning, settings)
                 for name, meaning in ((force, "friction_force"), (normal, "normal_force"))
             )
         said = f"friction = |{show(force)} / {show(normal)}|"
@@ -326,8 +289,8 @@ def _friction(table: TextTable, found: dict[str, list[str]], settings: FitSettin
                 f"The columns are {', '.join(map(show, table.written))}."
             )
         lengths, origin = arm
-        tangential = _over(_numbers(table, torque, "torque", settings), lengths)
-        pressing = _numbers(table, normal, "normal_force", settings)
+        tangential = _over(numbers(table, torque, "torque", settings), lengths)
+        pressing = numbers(table, normal, "normal_force", settings)
         said = f"friction = |{show(torque)} / (arm x {show(normal)})|, arm {origin}"
     else:
         return None
@@ -394,7 +357,7 @@ def _speed(table: TextTable, found: dict[str, list[str]], settings: FitSettings)
     """Return the sum of the surface speeds and how it was obtained; None if the rig gives no speed."""
 
     def of(meaning: str, which: int = 0) -> Array:
-        return _numbers(table, found[meaning][which], meaning, settings)
+        return numbers(table, found[meaning][which], meaning, settings)
 
     if "entrainment_speed" in found:
         name = found["entrainment_speed"][0]
@@ -407,7 +370,7 @@ def _speed(table: TextTable, found: dict[str, list[str]], settings: FitSettings)
         return np.abs(of("surface_speeds")), f"speed = {show(surfaces[0])}, with the other surface at rest"
     if "sliding_speed" in found and "slide_to_roll" in found:
         name, ratio = found["sliding_speed"][0], found["slide_to_roll"][0]
-        ratios = _ratios(table, ratio, settings)
+        ratios = numbers(table, ratio, "slide_to_roll", settings)
         if (np.abs(ratios) <= ROLLING_RATIO).any():
             raise InputError(
                 f"{table.path}: {show(name)} does not give the sum of the surface speeds where {show(ratio)} is zero; write a "
@@ -445,30 +408,7 @@ def _speed_of_rotation(table: TextTable, found: dict[str, list[str]], settings: 
         )
     lengths, origin = radius
     said = f"speed = {show(name)} x the radius of the track, {origin}"
-    return _numbers(table, name, "rotation", settings) * lengths, said
-
-
-def _ratios(table: TextTable, name: str, settings: FitSettings) -> Array:
-    """Return a slide-to-roll ratio as a number; in per cent if its unit says so."""
-
-    def factor(unit: str, where: str) -> float:
-        if unit not in BARE:
-            raise InputError(f"{where} has the unit {show(unit)}; a slide-to-roll ratio is a bare number or in %.")
-        return BARE[unit]
-
-    return table.numbers_of(name, factor, unit=unit_in(table, name, "slide_to_roll", settings))
-
-
-def _numbers(table: TextTable, name: str, meaning: str, settings: FitSettings) -> Array:
-    """Return the numbers of a column in SI units."""
-    dimension = DIMENSIONS_OF[meaning]
-    written = unit_in(table, name, meaning, settings)
-    if not written:
-        key = f", or {meaning} = {show(UNITS[dimension])} in [fit.units]" if meaning in RIG else ""
-        raise InputError(
-            f"{table.path}: column {show(name)} has no unit; write it in the header, as in '{name} [{UNITS[dimension]}]'{key}."
-        )
-    return table.numbers_of(name, lambda unit, where: si_factor(unit, dimension, f"the unit of {where}"), unit=written)
+    return numbers(table, name, "rotation", settings) * lengths, said
 
 
 def _texts(values: Array) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,17 +18,6 @@ __all__ = ["without_codes", "without_stops"]
 REST_SPEED = 1e-9  # Speed over the largest of the file below which it is zero but for rounding
 
 CODES = (-999.0, -9999.0, -99999.0)  # Numbers that programs write where there is none
-
-
-@dataclass(frozen=True)
-class _Kind:
-    """Rows of one kind, and what is said of one and of several of them."""
-
-    name: str
-    rows: Flags
-    one: str
-    several: str
-    at_rest: bool = False
 
 
 def without_codes(table: TextTable, abscissa: str, friction: Sequence[str]) -> TextTable:
@@ -56,22 +45,17 @@ def without_stops(table: TextTable, abscissa: str, friction: Sequence[str], sett
     rest = np.abs(speeds) <= REST_SPEED * largest
     if settings.magnitudes:
         return _moving(table, speeds, rest, list(frictions.values()))
-    kinds = [
-        _Kind(
-            abscissa,
-            speeds == 0,
-            "is zero, which is static friction and no point of the curve",
-            "zero (static friction)",
-            at_rest=True,
-        ),
-        _Kind(abscissa, speeds < 0, "is negative", "negative"),
-        *(_Kind(name, mu <= 0, "must be positive", "not positive") for name, mu in frictions.items()),
+    still = "is zero, which is static friction and no point of the curve"
+    kinds = [  # column, rows, and what is said of one and of several of them
+        (abscissa, speeds == 0, still, "zero (static friction)"),
+        (abscissa, speeds < 0, "is negative", "negative"),
+        *((name, mu <= 0, "must be positive", "not positive") for name, mu in frictions.items()),
     ]
-    kinds = [each for each in kinds if each.rows.any()]
-    if not kinds:
+    there = [each for each in kinds if each[1].any()]
+    if not there:
         return table
-    said = " and ".join(_sentence(table, each) for each in kinds)
-    if len(kinds) == 1 and kinds[0].at_rest:
+    said = " and ".join(_sentence(table, *each) for each in there)
+    if len(there) == 1 and there[0][2] == still:
         raise InputError(
             f"{table.path}: {said}; take such rows out, or set magnitudes = true in [fit], which leaves them out."
         )
@@ -122,12 +106,12 @@ def _emptied(table: TextTable, name: str, coded: Flags) -> TextTable:
     return replace(table, rows=rows, notes=(*table.notes, note))
 
 
-def _sentence(table: TextTable, kind: _Kind) -> str:
-    count = int(kind.rows.sum())
-    first = int(np.flatnonzero(kind.rows)[0])
+def _sentence(table: TextTable, name: str, rows: Flags, one: str, several: str) -> str:
+    count = int(rows.sum())
+    first = int(np.flatnonzero(rows)[0])
     if count == 1:
-        return f"row {table.numbers[first]}, column {show(kind.name)}: {show(table.column(kind.name)[first])} {kind.one}"
-    return f"column {show(kind.name)} is {kind.several} in {count} rows ({_listed(table, kind.rows)})"
+        return f"row {table.numbers[first]}, column {show(name)}: {show(table.column(name)[first])} {one}"
+    return f"column {show(name)} is {several} in {count} rows ({_listed(table, rows)})"
 
 
 def _listed(table: TextTable, rows: Flags) -> str:

@@ -1,76 +1,142 @@
-"""Cells of a laboratory's table in SI units, each checked and named by row and column where it cannot be used."""
+"""Columns of a laboratory's table: which the case names, their units, and their cells in SI units.
+
+A cell that cannot be used is named by row and column; one with a unit of its own is read with that.
+"""
 
 from __future__ import annotations
+
+import re
+from typing import Literal
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.cases.fit_settings import FitSettings
+from stribeck.files.cells import is_called, is_named, normalised_header
 from stribeck.files.columns import BARE, has_dimension, si_factor
 from stribeck.files.text_table import TextTable
-from stribeck.fits.table.columns import ABSCISSAS, DIMENSION
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import DIMENSIONS, InputError, show
 
-__all__ = ["Values"]
+__all__ = ["ABSCISSAS", "Abscissa", "checked", "dimension_of", "is_set", "named_in_case", "numbers", "undeclared", "unit_in"]
+
+Abscissa = Literal["speed", "speed_viscosity", "hersey_number", "hersey_per_length"]
+
+ABSCISSAS: tuple[Abscissa, ...] = ("speed", "speed_viscosity", "hersey_number")
+
+# Dimension of what a column may hold beside inputs of the contact; a column of another one is something else.
+DIMENSION = {
+    "speed": "speed",
+    "speed_viscosity": "drag",
+    "hersey_number": "number",
+    "friction": "number",
+    "error": "number",
+    "entrainment_speed": "speed",
+    "sliding_speed": "speed",
+    "surface_speeds": "speed",
+    "slide_to_roll": "number",
+    "friction_force": "force",
+    "normal_force": "force",
+    "rotation": "rotation",
+    "torque": "torque",
+}
+
+UNITS = {"speed": "mm/s", "rotation": "rpm", "torque": "mN m"}  # Units of examples where rigs have other ones than cases
 
 LARGEST_FRICTION = 10.0  # Friction coefficient from which percent are suspected
 
 
-class Values:
-    """Columns in SI units, NaN where a value is missing; a cell with a unit of its own is read with that."""
+def named_in_case(table: TextTable, settings: FitSettings, meaning: str, error: str = "") -> list[str]:
+    """Return the headers that the case has for a column, one for each of its texts; ``error`` is what errors are called."""
+    wanted, found = settings.columns[meaning], list[str]()
+    for text in wanted if isinstance(wanted, list) else [wanted]:
+        same = [name for name in table.header if is_called(name, text)]
+        if not same and meaning == "error":  # one of several of a name: that of friction
+            same = [name for name in table.header if name.endswith(f" {text}") and is_named(name, error)]
+        if not same:
+            raise InputError(f"{table.path}: {listed(table)}, none called {show(text)}, which [fit.columns] has as {meaning}.")
+        found.append(same[0])
+    return found
 
-    def __init__(self, table: TextTable, settings: FitSettings) -> None:
-        self.table, self.settings = table, settings
 
-    def checked(self, column: str, meaning: str) -> Array:
-        """Return the values of a column; refuse one that is impossible."""
-        values = self.numbers(column, meaning)
-        cells = self.table.column(column)
-        for i in np.flatnonzero(~np.isnan(values)).tolist():
-            values[i] = self._checked(float(values[i]), cells[i], meaning, self._where(i, column))
-        return values
+def undeclared(table: TextTable, settings: FitSettings) -> list[str]:
+    """Return the headers of which the case does not say what they are."""
+    texts = [text for wanted in settings.columns.values() for text in np.atleast_1d(wanted).tolist()]
+    return [name for name in table.header if name and not any(is_called(name, text) for text in texts)]
 
-    def numbers(self, column: str, meaning: str) -> Array:
-        """Return the numbers of a column as they stand."""
-        unit = self.settings.units.get(meaning, "")
-        return self.table.numbers_of(column, lambda unit, where: self._factor(unit, meaning, where), unit=unit)
 
-    def _where(self, i: int, column: str) -> str:
-        return f"{self.table.path}: row {self.table.numbers[i]}, column {show(column)}"
+def listed(table: TextTable) -> str:
+    """Return the sentence that lists the columns of a file."""
+    return f"the columns are {', '.join(map(show, table.written))} (separated by {table.separator}s)"
 
-    def _factor(self, unit: str, meaning: str, where: str) -> float:
+
+def is_set(name: str) -> bool:
+    """Return whether a column holds what was asked of the rig and not what it measured."""
+    return re.search(r"\b(?:nominal|set|target)\b", normalised_header(name)) is not None
+
+
+def dimension_of(meaning: str, settings: FitSettings) -> str:
+    """Return the dimension of what a column may hold."""
+    return DIMENSION.get(meaning) or settings.inputs.quantities[meaning].dimension
+
+
+def unit_in(table: TextTable, name: str, meaning: str, settings: FitSettings) -> str:
+    """Return the unit of a column: that of [fit.units], or as the file has it; one that is called RPM needs none."""
+    unit = settings.units.get(meaning)
+    if meaning == "normal_force" and normalised_header(name) == "load":
+        unit = unit or settings.units.get("load")
+    unit = unit or table.unit(name)
+    if not unit and DIMENSION.get(meaning) == "speed":
+        unit = settings.units.get("speed", "")
+    return "rpm" if meaning == "rotation" and not unit and normalised_header(name) == "rpm" else unit
+
+
+def numbers(table: TextTable, name: str, meaning: str, settings: FitSettings) -> Array:
+    """Return the numbers of a column in SI units as they stand, NaN where a value is missing."""
+    dimension, noun = dimension_of(meaning, settings), meaning.replace("_", " ")
+
+    def factor(unit: str, where: str) -> float:
         if meaning == "hersey_number" and has_dimension(unit or "-", "wavenumber"):
             return si_factor(unit, "wavenumber", meaning)
-        dimension = DIMENSION.get(meaning) or self.settings.inputs.quantities[meaning].dimension
         if dimension == "number":
             if unit not in BARE:
-                raise InputError(f"{where} has the unit {show(unit)}; {meaning.replace('_', ' ')} is a bare number or in %.")
+                raise InputError(f"{where} has the unit {show(unit)}; {noun} is a bare number or in %.")
             return BARE[unit]
         if not unit:
-            noun = meaning.replace("_", " ")
+            example = UNITS.get(dimension) or DIMENSIONS[dimension].example.partition(" ")[2]
             raise InputError(
-                f"{where} has no unit; write it in the header, as in '{noun} [mm/s]', or {meaning} = \"mm/s\" in [fit.units]."
-                if dimension == "speed"
-                else f"{where} has no unit; write it in the header, in brackets, or in [fit.units] under {meaning}."
+                f"{where} has no unit; write it in the header, as in '{name} [{example}]', or {meaning} = {show(example)} in "
+                "[fit.units]."
             )
         try:
             return si_factor(unit, dimension, meaning)
         except InputError as problem:
             raise InputError(f"{where}: {str(problem).replace(f'{meaning} = ', 'unit ', 1)}") from None
 
-    def _checked(self, value: float, cell: str, meaning: str, where: str) -> float:
-        if self.settings.magnitudes and meaning in (*ABSCISSAS, "friction"):
-            value = abs(value)
-        if meaning == "friction" and value > LARGEST_FRICTION:
-            raise InputError(
-                f"{where}: a friction coefficient of {value:g} is not plausible; if it is in percent, write [%] in the "
-                'header or friction = "%" in [fit.units].'
-            )
-        if meaning == "error" and value <= 0:
-            raise InputError(f"{where}: {show(cell)} must be positive; a standard error of zero would outweigh all rows.")
-        if meaning in self.settings.inputs.quantities and meaning != "speed":
-            try:
-                self.settings.inputs.quantities[meaning].checked(value)
-            except InputError as problem:
-                raise InputError(f"{where}: {problem}") from None
-        return value
+    return table.numbers_of(name, factor, unit=unit_in(table, name, meaning, settings))
+
+
+def checked(table: TextTable, name: str, meaning: str, settings: FitSettings) -> Array:
+    """Return the numbers of a column in SI units; refuse one that is impossible."""
+    values, cells = numbers(table, name, meaning, settings), table.column(name)
+    for i in np.flatnonzero(~np.isnan(values)).tolist():
+        where = f"{table.path}: row {table.numbers[i]}, column {show(name)}"
+        values[i] = _checked(float(values[i]), cells[i], meaning, where, settings)
+    return values
+
+
+def _checked(value: float, cell: str, meaning: str, where: str, settings: FitSettings) -> float:
+    if settings.magnitudes and meaning in (*ABSCISSAS, "friction"):
+        value = abs(value)
+    if meaning == "friction" and value > LARGEST_FRICTION:
+        raise InputError(
+            f"{where}: a friction coefficient of {value:g} is not plausible; if it is in percent, write [%] in the "
+            'header or friction = "%" in [fit.units].'
+        )
+    if meaning == "error" and value <= 0:
+        raise InputError(f"{where}: {show(cell)} must be positive; a standard error of zero would outweigh all rows.")
+    if meaning in settings.inputs.quantities and meaning != "speed":
+        try:
+            settings.inputs.quantities[meaning].checked(value)
+        except InputError as problem:
+            raise InputError(f"{where}: {problem}") from None
+    return value
