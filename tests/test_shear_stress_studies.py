@@ -15,8 +15,8 @@ from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.explorer.answer import Answerer
 from stribeck.explorer.inputs import choices, inputs, url
 from stribeck.fits.free_inputs import free_inputs
+from stribeck.fits.measurements import measurements_of
 from stribeck.fits.model import FrictionModel
-from stribeck.fits.reading import measurements_of
 from stribeck.regimes.margins import regime_margins
 
 EXAMPLES = Path(__file__).parents[1] / "examples"

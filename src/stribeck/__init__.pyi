@@ -18,7 +18,7 @@ from stribeck.experiments.compare import compare
 from stribeck.experiments.master_curve import master_curve
 from stribeck.experiments.next_runs import next_runs
 from stribeck.fits.fit import fit
-from stribeck.fits.reading import read_measurements
+from stribeck.fits.measurements import read_measurements
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
 from stribeck.regimes.phase_diagram import phase_diagram

@@ -20,12 +20,11 @@ from stribeck.files.results import Exported, Labelled
 from stribeck.files.writing import PathLike, path_of
 from stribeck.fits.fit import names_to_fit
 from stribeck.fits.free_inputs import FreeInput, free_inputs
-from stribeck.fits.least_squares import Minimum, settle
+from stribeck.fits.least_squares import Minimum, Objective, settle
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.model import Prediction
-from stribeck.fits.objective import Objective
+from stribeck.fits.repeats import memory
 from stribeck.fits.result import FitOutcome, FittedInput, WithFittedInputs, unit_of
-from stribeck.fits.table.correlated import memory
 from stribeck.motions.motion import Motion
 from stribeck.quantities.formats import format_percent
 from stribeck.quantities.results import ByValue, Card, Told

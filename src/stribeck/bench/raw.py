@@ -17,12 +17,12 @@ from stribeck.files.cells import is_named, rows_listed
 from stribeck.files.columns import has_dimension, si_factor
 from stribeck.files.table_reading import read_table
 from stribeck.files.text_table import TextTable
-from stribeck.fits.table.columns import columns_of, has_column, known_name, with_errors_named
-from stribeck.fits.table.correlated import FEWEST, errors_of_means
-from stribeck.fits.table.rig import MADE_FRICTION, column_of, measured, prepared, temperatures
-from stribeck.fits.table.stated import inputs_said
-from stribeck.fits.table.strokes import without_codes
-from stribeck.fits.table.values import LARGEST_FRICTION, checked, numbers
+from stribeck.fits.columns import columns_of, has_column, known_name, with_errors_named
+from stribeck.fits.repeats import FEWEST, errors_of_means
+from stribeck.fits.rig import MADE_FRICTION, column_of, measured, prepared, temperatures
+from stribeck.fits.stated import inputs_said
+from stribeck.fits.strokes import without_codes
+from stribeck.fits.values import LARGEST_FRICTION, checked, numbers
 from stribeck.quantities.formats import format_error, format_si
 from stribeck.quantities.units import InputError, show
 

@@ -17,7 +17,7 @@ from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import FitSettings, with_bench_keys
 from stribeck.cases.reading import load_rig
 from stribeck.contacts.geometries import INPUT_TABLES
-from stribeck.fits.reading import files_of
+from stribeck.fits.measurements import files_of
 from stribeck.fluids.presets import PRESETS, Preset
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.keywords import answers_typos

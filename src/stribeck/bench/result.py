@@ -13,7 +13,7 @@ from stribeck._types import Array, Indices
 from stribeck.files.datasets import Column, write_columns
 from stribeck.files.results import UNWRITTEN, WRITTEN, Exported, Labelled
 from stribeck.files.writing import PathLike
-from stribeck.fits.table.rig import TEMPERATURE_TOLERANCE
+from stribeck.fits.rig import TEMPERATURE_TOLERANCE
 from stribeck.quantities.docstrings import told
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.results import ByValue, Card, Told

@@ -185,7 +185,7 @@ def read_arguments(command: str, files: Sequence[Path]) -> tuple[list[Path], Cas
     # Imported here, so that other commands need not load fits.
     from stribeck.cases.reading import load_case
     from stribeck.files.toml import read_toml
-    from stribeck.fits.reading import files_of, missing_text
+    from stribeck.fits.measurements import files_of, missing_text
 
     example = f"stribeck {command} measured.csv case.toml"
     if not files:

@@ -11,17 +11,15 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 from stribeck.cases.case import Case
-from stribeck.cases.fit_settings import FitSettings
 from stribeck.contact_laws.finite_surface import FiniteSurface, has_endless_tail
 from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.files.writing import PathLike
-from stribeck.fits.case_file import load_fit_case
+from stribeck.fits.case_file import case_of
 from stribeck.fits.fit import fit, names_to_fit
-from stribeck.fits.measurements import Measurements
-from stribeck.fits.reading import Data, measurements_of
+from stribeck.fits.measurements import Data, Measurements, measurements_of
 from stribeck.fits.result import Fit
 from stribeck.fluids.rheology.eyring import Eyring
 from stribeck.fluids.rheology.rate_laws import Carreau
@@ -147,9 +145,8 @@ def compare(
     -----
     Source: Burnham and Anderson, Model Selection and Multimodel Inference (2002).
     """
-    loaded = case if isinstance(case, Case | Contact) else load_fit_case(data, case)
-    contact = loaded.contact if isinstance(loaded, Case) else loaded
-    settings = loaded.fit if isinstance(loaded, Case) else FitSettings.of(contact)
+    case = case_of(data, case)
+    contact, settings = case.contact, case.fit
     rows = measurements_of(data, settings)
     names = names_to_fit(free, settings, contact)
     if models is not None and laws is not None:
@@ -167,10 +164,9 @@ def compare(
                 on_step(f"{name}: {what}", before + done, before + total * (1 + len(compared) - number))
 
         changed = contact.replace(**{key: value for key, value in model.items() if key != "free"})
-        problem = replace(loaded, contact=changed) if isinstance(loaded, Case) else changed
         inputs = tuple(dict.fromkeys((*names, *model.get("free", ()))))
         try:
-            each = fit(rows, problem, free=inputs, intervals=False, on_step=step)
+            each = fit(rows, replace(case, contact=changed), free=inputs, intervals=False, on_step=step)
         except (InputError, SolveError) as why:
             failed[name] = str(why)
             continue

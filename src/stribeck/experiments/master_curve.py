@@ -18,13 +18,12 @@ from stribeck.experiments.common_curve import Agreement, Points, agreement, basi
 from stribeck.files.datasets import Column
 from stribeck.files.results import Exported, Labelled, Record
 from stribeck.files.writing import PathLike
-from stribeck.fits.case_file import load_fit_case
-from stribeck.fits.measurements import Measurements
-from stribeck.fits.reading import Data, measurements_of
+from stribeck.fits.case_file import case_of
+from stribeck.fits.measurements import Data, Measurements, measurements_of
 from stribeck.quantities.formats import format_percent
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import Card, Told
-from stribeck.quantities.units import InputError, checked_kind
+from stribeck.quantities.units import InputError
 
 __all__ = ["Collapse", "CurveOffset", "MasterCurve", "PowerLaw", "master_curve"]
 
@@ -243,9 +242,8 @@ def master_curve(data: Data, case: PathLike | Case | Contact) -> MasterCurve:
     Of 200 synthetic experiments of three curves that are one, the test at 1 % refused at most 3 %. The offset of a curve was
     zero within its 95 % interval in 96 to 98 %, its shift in 91 to 97 %.
     """
-    loaded = case if isinstance(case, Case | Contact) else load_fit_case(data, case)
-    contact = loaded.contact if isinstance(loaded, Case) else checked_kind("case", loaded, Contact, "a Case or a contact")
-    settings = loaded.fit if isinstance(loaded, Case) else FitSettings.of(contact)
+    case = case_of(data, case)
+    contact, settings = case.contact, case.fit
     rows = measurements_of(data, settings)
     used, notes = _usable(rows)
     contacts = [contact.replace(speed=1.0, **inputs) for inputs in used.inputs]

@@ -14,6 +14,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from stribeck.cases.case import Case
+from stribeck.cases.fit_settings import FitSettings
 from stribeck.cases.law import INPUTS_OF_SURFACES
 from stribeck.cases.model_parts import FILES
 from stribeck.cases.reading import load_case
@@ -26,9 +27,9 @@ from stribeck.files.writing import PathLike, atomic_write
 from stribeck.fits.result import Fit
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.uncertain import has_error, split_error
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, show
 
-__all__ = ["check_fitted_case", "load_fit_case", "write_fitted_case"]
+__all__ = ["case_of", "check_fitted_case", "write_fitted_case"]
 
 DIGITS = 10  # Digits of the values in the file, enough to solve the same state again
 
@@ -42,14 +43,20 @@ SPECTRUM = {"spectrum", "wavenumber", "density"}
 _TABLE = re.compile(r"\s*\[+\s*([^\]]*?)\s*\]+\s*(?:#.*)?")
 
 
-def load_fit_case(data: object, path: PathLike) -> Case:
-    """Read the case file of a fit; say so if it and the data were swapped."""
-    if isinstance(data, str | os.PathLike) and "contact" in _tables(data) and not _tables(path) and Path(path).is_file():
+def case_of(data: object, case: PathLike | Case | Contact) -> Case:
+    """Return the case of a fit, read if need be, or that of a contact alone; say so if its file and the data were swapped."""
+    if isinstance(case, Case):
+        return case
+    if isinstance(case, Contact):
+        return Case(Path(), case, fit=FitSettings.of(case))
+    if not isinstance(case, str | os.PathLike):
+        raise InputError(f"case = {show(case)}; it must be the path of a case file, a Case, LineContact or PointContact.")
+    if isinstance(data, str | os.PathLike) and "contact" in _tables(data) and not _tables(case) and Path(case).is_file():
         raise InputError(
-            f"{data} and {path} look swapped: {data} is a case file and {path} is not. "
-            f"Measured friction comes first, then the case: {path} {data}."
+            f"{data} and {case} look swapped: {data} is a case file and {case} is not. "
+            f"Measured friction comes first, then the case: {case} {data}."
         )
-    return load_case(path)
+    return load_case(case)
 
 
 def _tables(path: PathLike) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,41 +22,29 @@ from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.fits.case_file import load_fit_case
+from stribeck.fits.case_file import case_of
+from stribeck.fits.diagnosis import judge_residuals, undetermined
 from stribeck.fits.free_inputs import FreeInput, free_inputs
-from stribeck.fits.identifiability import undetermined
-from stribeck.fits.least_squares import Minimum, effective_parameters, minimise, settle
-from stribeck.fits.measurements import Measurements
+from stribeck.fits.intervals import Ends, covariance_of, ends_of
+from stribeck.fits.least_squares import Minimum, Objective, effective_parameters, minimise, objective, settle
+from stribeck.fits.measurements import Data, Measurements, measurements_of
 from stribeck.fits.model import FrictionModel
-from stribeck.fits.notes import notes_of, outcome_of
-from stribeck.fits.objective import Objective, objective
-from stribeck.fits.profile_likelihood import BetterMinimumError, Ends, profile_ends
-from stribeck.fits.reading import Data, measurements_of
-from stribeck.fits.residuals import excess_of, judge_residuals
-from stribeck.fits.result import Fit, FittedInput, unit_of
+from stribeck.fits.result import Fit, FittedInput, notes_of, outcome_of, unit_of
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError
 
 __all__ = ["fit"]
-
-LEVELS = (0.682689492137086, 0.95)  # Probabilities of the two intervals
 
 # Places tried before the least squares, those followed, and how far from the case they lie.
 STARTS, BEST_STARTS, START_FACTOR = 64, 4, 10.0
 
 FIRST_NOISE = 0.1  # Noise with which the search begins where it is not known
 
-RESTARTS = 4  # Better minima on profiles that are followed before the fit counts as lost
-
 ROUNDS = 6  # Minima at which states that are read are solved, before all are solved along the rest of the way
-
-NOTHING = 1e-13  # Eigenvalue of the information, over the largest, below which it is rounding
 
 FLAT = 1e-5  # Singular value of the derivatives, over the largest, below which nothing changes along a direction
 
 SAME = 1e-3  # Rise of q up to which two fits are the same
-
-WIDEST = 600.0  # Half-width of an interval of a logarithm from which it is open
 
 SOLVED_PLACES = 6  # Places at which a fit usually solves its states, for its progress
 
@@ -118,8 +106,8 @@ def fit(
     factor on all rows, from 1e-4 to 1e-3, where that is larger. In 200 synthetic experiments the intervals held the
     truth as often as they should (``test_fit_coverage.py``).
     """
-    problem = _problem(data, case)
-    contact, settings, definition = problem.contact, problem.settings, problem.definition
+    case = case_of(data, case)
+    contact, settings, definition = case.contact, case.fit, case.definition
     data = measurements_of(data, settings)
     names = names_to_fit(free, settings, contact)
     if robust is not None:
@@ -129,12 +117,12 @@ def fit(
     model = FrictionModel(contact, data, wanted)
     _check_enough(data, wanted)
     report = _Progress(model, on_step)
-    rtol = report.rtol = model.rtol_of_states(problem.rtol)
+    rtol = report.rtol = model.rtol_of_states(case.rtol)
     states = model.states(definition, rtol, report.count_state)
     goal = objective(model, states, settings, settings.robust)
 
     found = _search(goal, definition, report)
-    wanted_rtol = model.rtol_of_states(problem.rtol, found.relative_noise)
+    wanted_rtol = model.rtol_of_states(case.rtol, found.relative_noise)
     if wanted_rtol < rtol:  # the data are better than the states so far
         report.rtol = wanted_rtol
         states = model.states(definition, wanted_rtol, report.count_state)
@@ -142,17 +130,17 @@ def fit(
     fine = _solved(found, report)
     if not states.uses_atlas:  # what was solved is read from now on
         found = replace(fine, objective=replace(fine.objective, states=states))
-    covariance, quantiles, inflation = _covariance(fine)
+    covariance, quantiles, inflation = covariance_of(fine)
     before = found
-    ends, found = _intervals(found, covariance, quantiles, inflation, intervals, report)
+    ends, found = ends_of(found, covariance, quantiles, inflation, intervals, report)
     if found is not before:  # a profile led to a better fit, to which the ends belong
         fine = _solved(found, report)
-        covariance, quantiles, inflation = _covariance(fine)
+        covariance, quantiles, inflation = covariance_of(fine)
     if not states.uses_atlas:
-        return _result(fine, ends, covariance, quantiles, problem, None)
+        return _result(fine, ends, covariance, quantiles, case, None)
     shift = fine.theta - found.theta
     ends = [[Ends(e.low + d, e.high + d) for e in each] for each, d in zip(ends, shift.tolist(), strict=True)]
-    return _result(fine, ends, covariance, quantiles, problem, shift)
+    return _result(fine, ends, covariance, quantiles, case, shift)
 
 
 def names_to_fit(free: Sequence[str] | None, settings: FitSettings, contact: Contact) -> tuple[str, ...]:
@@ -200,27 +188,6 @@ class _Progress:
             of_place = self.model.count_states(self.rtol)
             total = of_place * max(SOLVED_PLACES, self.done // of_place + 1)
             self.on_step(self.what, self.done, total)
-
-
-@dataclass(frozen=True)
-class _Problem:
-    """What a case says to a fit."""
-
-    contact: Contact
-    settings: FitSettings
-    definition: Definition
-    rtol: float
-    facts: dict[str, float] = field(default_factory=dict)
-
-
-def _problem(data: object, case: str | os.PathLike[str] | Case | Contact) -> _Problem:
-    if isinstance(case, Contact):
-        return _Problem(case, FitSettings.of(case), Case.definition, Case.rtol)
-    if not isinstance(case, Case):
-        if not isinstance(case, str | os.PathLike):
-            raise InputError(f"case = {show(case)}; it must be the path of a case file, a Case, LineContact or PointContact.")
-        case = load_fit_case(data, case)
-    return _Problem(case.contact, case.fit, case.definition, case.rtol, case.facts)
 
 
 def _check_enough(data: Measurements, wanted: Sequence[FreeInput]) -> None:
@@ -302,75 +269,15 @@ def _nearest(at: Minimum) -> Array:
     return np.asarray(np.clip(at.theta - tied.T @ (tied @ at.theta), low, high))
 
 
-def _covariance(at: Minimum) -> tuple[Array, list[float], float]:
-    """Return the covariance of the logarithms, the squared quantiles of the two levels, and how much the loss inflates them.
-
-    Inputs at a bound have nan, and inputs that nothing determines infinity on the diagonal and nan beside it.
-    """
-    from scipy.stats import norm, t
-
-    free = np.nonzero(np.logical_not(at.at_bound))[0]
-    rows, _ = at.objective.priors
-    psi, slope = at.objective.influence(at.residuals)
-    n, p = at.jacobian.shape
-    J, P = at.jacobian[:, free], rows[:, free]
-    freedom = max(n - effective_parameters(at), 1.0)
-    # Huber's sandwich for the robust loss, with averages over the rows so that no weight is negative.
-    weight = max(float(slope.mean()), 0.1) if at.objective.robust else 1.0
-    given = at.objective.sigma is not None
-    excess = excess_of(float(at.residuals @ at.residuals), freedom) if given else 1.0
-    inflation = float((psi @ psi) / freedom / weight) if at.objective.robust else excess
-    values, vectors = np.linalg.eigh(weight * (J.T @ J) + P.T @ P)
-    seen = values > NOTHING * max(float(values.max(initial=0.0)), 1e-300)
-    inner = (vectors[:, seen] / values[seen]) @ vectors[:, seen].T * inflation
-    lost = (np.abs(vectors[:, ~seen]) > 1e-6).any(axis=1)
-    inner[lost], inner[:, lost] = np.nan, np.nan
-    inner[lost, lost] = np.inf
-    covariance = np.full((p, p), np.nan)
-    covariance[np.ix_(free, free)] = inner
-    known = given and excess == 1
-    quantiles = [float((norm.ppf(0.5 + level / 2) if known else t.ppf(0.5 + level / 2, freedom)) ** 2) for level in LEVELS]
-    return covariance, quantiles, inflation
-
-
-def _intervals(
-    found: Minimum, covariance: Array, quantiles: list[float], inflation: float, profile: bool, report: _Progress
-) -> tuple[list[list[Ends]], Minimum]:
-    """Return the intervals of each free input, and the minimum that they belong to."""
-    p = len(found.theta)
-    if not profile:
-        return [[_normal(float(found.theta[i]), float(covariance[i, i]) * q) for q in quantiles] for i in range(p)], found
-    thresholds = [q * inflation for q in quantiles]
-    for _ in range(RESTARTS):
-        try:
-            finite = np.where(np.isfinite(covariance), covariance, 0.0)
-            nothing = [Ends(-math.inf, math.inf)] * len(thresholds)
-            lost = np.isinf(np.diag(covariance))
-            return [
-                nothing if lost[i] else profile_ends(found, i, finite, thresholds, lambda: report("intervals"))
-                for i in range(p)
-            ], found
-        except BetterMinimumError as better:
-            found = settle(found.objective, better.theta, lambda: report("fitting"))
-            covariance, _, _ = _covariance(found)
-    return _intervals(replace(found, ended=False), covariance, quantiles, inflation, False, report)
-
-
-def _normal(theta: float, squared: float) -> Ends:
-    """Return the interval of half-width sqrt(squared), open where that is no number or no factor in double precision."""
-    half = math.sqrt(squared) if squared < WIDEST**2 else math.inf
-    return Ends(theta - half, theta + half)
-
-
 def _result(
     at: Minimum,
     ends: list[list[Ends]],
     covariance: Array,
     quantiles: list[float],
-    problem: _Problem,
+    case: Case,
     shift: Array | None,
 ) -> Fit:
-    contact = problem.contact
+    contact = case.contact
     model, data = at.objective.model, at.objective.model.data
     bound = at.at_bound
     width = np.sqrt(np.diag(covariance))
@@ -398,22 +305,22 @@ def _result(
         correlation = covariance / np.outer(width, width)
         moved = np.abs(shift) / width if shift is not None else np.array([math.nan])
     contacts = tuple(model.contact_of(k, at.theta) for k in range(len(data.curves)))
-    shared: dict[str, float | None] = {each.name: each.value for each in inputs if not each.is_factor and each.curve is None}
-    factors = {each.name: each.value for each in inputs if each.is_factor}
-    first = [(each.name, getattr(contact, each.name, None)) for each in inputs if each.is_factor]
-    shared |= {name: value * factors[name] for name, value in first if value is not None}
-    of_first = [each.names for each in model.free if each.curves is not None or each.also]
-    shared |= {name: getattr(contacts[0], name, None) for names in of_first for name in names}
+    fitted: dict[str, float] = {}
+    for free, each in zip(model.free, inputs, strict=True):
+        of_first = free.curves is not None or bool(free.also)
+        for name in free.names:
+            own, first = (getattr(one, name, None) for one in (contact, contacts[0]))
+            value = first if of_first else own * each.value if own is not None and free.is_factor else each.value
+            if own is not None and value is not None:
+                fitted[name] = value
     errors = at.prediction.error / at.prediction.friction
     return Fit(
         inputs=inputs,
         outcome=outcome,
-        contact=contact.replace(
-            **{name: value for name, value in shared.items() if getattr(contact, name, None) is not None and value is not None}
-        ),
+        contact=contact.replace(**fitted),
         contacts=contacts,
         data=data,
-        definition=problem.definition,
+        definition=case.definition,
         law="exponential" if contact.law is None else contact.law.name,
         friction=at.prediction.friction,
         residuals=at.residuals,
@@ -424,9 +331,7 @@ def _result(
         robust=at.objective.robust,
         quality=judge_residuals(at, data.curve, freedom),
         undetermined=weak,
-        checks=checks_of(
-            Subject(max(contacts, key=lambda each: each.hertz.pressure), problem.facts, problem.definition), "contact"
-        ),
+        checks=checks_of(Subject(max(contacts, key=lambda each: each.hertz.pressure), case.facts, case.definition), "contact"),
         notes=(
             *data.notes,
             *_scaled(model.free, contact, contacts),

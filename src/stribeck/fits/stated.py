@@ -10,7 +10,7 @@ from stribeck.cases.fit_settings import FitSettings, inputs_of_file
 from stribeck.files.cells import is_named
 from stribeck.files.columns import stated_in
 from stribeck.files.text_table import TextTable
-from stribeck.fits.table.rig import PATTERNS
+from stribeck.fits.rig import PATTERNS
 from stribeck.fluids.description import celsius
 from stribeck.quantities.units import InputError
 

@@ -1,7 +1,8 @@
-r"""Intervals by profile likelihood: how far an input can be moved, the others fitted anew, until noise cannot explain it.
+r"""Intervals of a fit, by its covariance or by profile likelihood.
 
-An end of the interval is where :math:`\min_{\theta: \theta_i \text{ fixed}} q - \min q = t^2`, with t the quantile of
-Student's distribution where the size of the noise comes from the residuals, else of the normal one; for the robust loss times
+The latter is how far an input can be moved, the others fitted anew, until noise cannot explain it.  An end of the interval is
+where :math:`\min_{\theta: \theta_i \text{ fixed}} q - \min q = t^2`, with t the quantile of Student's distribution where the
+size of the noise comes from the residuals, else of the normal one; for the robust loss times
 :math:`\langle \psi^2 \rangle / \langle \psi' \rangle` (Heritier and Ronchetti, J. Am. Stat. Assoc. 89 (1994) 897).
 Source: Venzon and Moolgavkar, Appl. Stat. 37 (1988) 87.
 """
@@ -10,16 +11,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.fits.least_squares import Minimum, minimise
+from stribeck.fits.diagnosis import excess_of
+from stribeck.fits.least_squares import Minimum, effective_parameters, minimise, settle
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["BetterMinimumError", "Ends", "profile_ends"]
+__all__ = ["Ends", "covariance_of", "ends_of"]
+
+LEVELS = (0.682689492137086, 0.95)  # Probabilities of the two intervals
+
+RESTARTS = 4  # Better minima on profiles that are followed before the fit counts as lost
+
+NOTHING = 1e-13  # Eigenvalue of the information, over the largest, below which it is rounding
+
+WIDEST = 600.0  # Half-width of an interval of a logarithm from which it is open
 
 ACCURACY = 0.015  # What an end may miss, in standard errors
 
@@ -36,7 +46,7 @@ BETTER = 1e-3  # How much lower q may be elsewhere before the minimum was none
 LONGEST = 2.0  # Longest first step of a logarithm
 
 
-class BetterMinimumError(Exception):
+class _BetterMinimumError(Exception):
     """The search along a profile found a better fit than that it began from."""
 
     def __init__(self, theta: Array) -> None:
@@ -52,8 +62,68 @@ class Ends:
     high: float
 
 
-def profile_ends(
-    at: Minimum, i: int, covariance: Array, thresholds: list[float], on_point: Callable[[], object] | None = None
+def covariance_of(at: Minimum) -> tuple[Array, list[float], float]:
+    """Return the covariance of the logarithms, the squared quantiles of the two levels, and how much the loss inflates them.
+
+    Inputs at a bound have nan, and inputs that nothing determines infinity on the diagonal and nan beside it.
+    """
+    from scipy.stats import norm, t
+
+    free = np.nonzero(np.logical_not(at.at_bound))[0]
+    rows, _ = at.objective.priors
+    psi, slope = at.objective.influence(at.residuals)
+    n, p = at.jacobian.shape
+    J, P = at.jacobian[:, free], rows[:, free]
+    freedom = max(n - effective_parameters(at), 1.0)
+    # Huber's sandwich for the robust loss, with averages over the rows so that no weight is negative.
+    weight = max(float(slope.mean()), 0.1) if at.objective.robust else 1.0
+    given = at.objective.sigma is not None
+    excess = excess_of(float(at.residuals @ at.residuals), freedom) if given else 1.0
+    inflation = float((psi @ psi) / freedom / weight) if at.objective.robust else excess
+    values, vectors = np.linalg.eigh(weight * (J.T @ J) + P.T @ P)
+    seen = values > NOTHING * max(float(values.max(initial=0.0)), 1e-300)
+    inner = (vectors[:, seen] / values[seen]) @ vectors[:, seen].T * inflation
+    lost = (np.abs(vectors[:, ~seen]) > 1e-6).any(axis=1)
+    inner[lost], inner[:, lost] = np.nan, np.nan
+    inner[lost, lost] = np.inf
+    covariance = np.full((p, p), np.nan)
+    covariance[np.ix_(free, free)] = inner
+    known = given and excess == 1
+    quantiles = [float((norm.ppf(0.5 + level / 2) if known else t.ppf(0.5 + level / 2, freedom)) ** 2) for level in LEVELS]
+    return covariance, quantiles, inflation
+
+
+def ends_of(
+    found: Minimum, covariance: Array, quantiles: list[float], inflation: float, profile: bool, report: Callable[[str], None]
+) -> tuple[list[list[Ends]], Minimum]:
+    """Return the intervals of each free input, and the minimum that they belong to."""
+    p = len(found.theta)
+    if not profile:
+        return [[_normal(float(found.theta[i]), float(covariance[i, i]) * q) for q in quantiles] for i in range(p)], found
+    thresholds = [q * inflation for q in quantiles]
+    for _ in range(RESTARTS):
+        try:
+            finite = np.where(np.isfinite(covariance), covariance, 0.0)
+            nothing = [Ends(-math.inf, math.inf)] * len(thresholds)
+            lost = np.isinf(np.diag(covariance))
+            return [
+                nothing if lost[i] else _profile_ends(found, i, finite, thresholds, lambda: report("intervals"))
+                for i in range(p)
+            ], found
+        except _BetterMinimumError as better:
+            found = settle(found.objective, better.theta, lambda: report("fitting"))
+            covariance, _, _ = covariance_of(found)
+    return ends_of(replace(found, ended=False), covariance, quantiles, inflation, False, report)
+
+
+def _normal(theta: float, squared: float) -> Ends:
+    """Return the interval of half-width sqrt(squared), open where that is no number or no factor in double precision."""
+    half = math.sqrt(squared) if squared < WIDEST**2 else math.inf
+    return Ends(theta - half, theta + half)
+
+
+def _profile_ends(
+    at: Minimum, i: int, covariance: Array, thresholds: list[float], on_point: Callable[[], object]
 ) -> list[Ends]:
     """Return the intervals of one free input."""
     sides = [_side(at, i, sign, covariance, thresholds, on_point) for sign in (-1.0, 1.0)]
@@ -61,7 +131,7 @@ def profile_ends(
 
 
 def _side(
-    at: Minimum, i: int, sign: float, covariance: Array, thresholds: list[float], on_point: Callable[[], object] | None
+    at: Minimum, i: int, sign: float, covariance: Array, thresholds: list[float], on_point: Callable[[], object]
 ) -> list[float]:
     bounds = at.objective.bounds
     limit = float(bounds[0][i] if sign < 0 else bounds[1][i])
@@ -85,11 +155,10 @@ def _side(
         else:
             return math.inf
         if found.value < at.value - BETTER:
-            raise BetterMinimumError(found.theta)
+            raise _BetterMinimumError(found.theta)
         excess = math.sqrt(max(0.0, found.value - found.fall - at.value))
         known.append((distance, excess, found.theta))
-        if on_point is not None:
-            on_point()
+        on_point()
         return excess
 
     ends = []

@@ -19,8 +19,8 @@ from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import is_named, normalised_header, number_of
 from stribeck.files.columns import has_dimension, si_factor, stated_in
 from stribeck.files.text_table import TextTable
-from stribeck.fits.table.correlated import FEWEST
-from stribeck.fits.table.values import dimension_of, is_set, named_in_case, numbers, undeclared, unit_in
+from stribeck.fits.repeats import FEWEST
+from stribeck.fits.values import dimension_of, is_set, named_in_case, numbers, undeclared, unit_in
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["MADE_FRICTION", "MADE_SPEED", "RIG", "column_of", "measured", "prepared", "temperature_note", "temperatures"]
