@@ -255,7 +255,7 @@ def roughness_without_minimum(
     weakening                                        14029  444    14.0   1.25
     ===============================================  =====  =====  =====  =====
 
-    The solver's are :func:`stribeck.regimes.weakening.roughness_without_minimum`.
+    The solver's are :func:`stribeck.regimes.phase_diagram.roughness_without_minimum`.
     The last three assume small relative roughness and are asked where it is not small.
     """
     checked_word("criterion", criterion, get_args(Criterion))

@@ -158,7 +158,7 @@ def compare_command(
     --out writes the criteria of all laws as data (.nc, .zarr, .csv or .parquet), or the preferred one with its fitted values
     as a case (.toml), which the other commands read.
     """
-    from stribeck.experiments.preferred_case import write_preferred_case
+    from stribeck.experiments.compare import write_preferred_case
     from stribeck.files.datasets import write_data
 
     data, loaded = read_arguments("compare", files)

@@ -112,7 +112,7 @@ def curve_command(
         curve = sb.stribeck_curve(on_point=progress, **arguments)
         if curve.outcome is Outcome.ROUNDING:
             raise InputError(_too_small(curve))
-        from stribeck.regimes.verdict import first_verdict, whole_verdict
+        from stribeck.regimes.overview import first_verdict, whole_verdict
 
         verdict = first_verdict(curve, loaded)
         with suppress(KeyboardInterrupt):  # which keeps the curve

@@ -52,8 +52,7 @@ from stribeck.solver.point.solution import PointSolution
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import solve
 from stribeck.solver.solve_error import SolveError
-from stribeck.uncertainty.band import friction_band
-from stribeck.uncertainty.propagate import propagate
+from stribeck.uncertainty.propagate import friction_band, propagate
 from stribeck.uncertainty.result import Uncertainty
 
 PIN_RTOL = 1e-4  # Relative tolerance of the state of a pinned contact.

@@ -25,7 +25,7 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import InputError
 from stribeck.regimes.transition_speeds import transition_speeds
 from stribeck.solver.solve_error import SolveError
-from stribeck.uncertainty.band import Band
+from stribeck.uncertainty.propagate import Band
 
 CURVE_POINTS = 121  # Points at which a curve is shown.
 DIAGRAM_ROWS = 33  # Roughnesses of a diagram.

@@ -13,8 +13,7 @@ from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.explorer.answer import Answer
 from stribeck.quantities.formats import format_factor, format_percent, format_si
 from stribeck.quantities.number import Number
-from stribeck.regimes.margin_scan import Crossing
-from stribeck.regimes.margins import RegimeMargins
+from stribeck.regimes.margins import Crossing, RegimeMargins
 from stribeck.solver.base_solution import BaseSolution, regime_of_state
 from stribeck.solver.numbers import report_rows
 

@@ -66,7 +66,7 @@ def plot_curve(
     panel : {"film", "hydrodynamic", "shares"}
         What the second panel shows: central and minimum film with the roughness, friction over that of smooth surfaces at the
         same speed (a line contact of the article, over speed or load), or the shares of the load.
-    band : stribeck.uncertainty.band.Band, optional
+    band : stribeck.uncertainty.propagate.Band, optional
         What errors of the inputs leave open along the curve, which is drawn around the friction.
     verdict : str
         Sentence that says whether the model applies, which stands before the notes.

@@ -22,8 +22,7 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.parts import part_names
 from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.quantities.units import InputError
-from stribeck.regimes.margin_scan import Crossing
-from stribeck.regimes.margins import RegimeMargins
+from stribeck.regimes.margins import Crossing, RegimeMargins
 from stribeck.solver.solve_error import SolveError
 from stribeck.uncertainty.propagate import STATE_RTOL, errors_of_kept_inputs, inputs_tied_to
 from stribeck.uncertainty.result import exact_inputs

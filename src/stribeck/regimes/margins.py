@@ -5,25 +5,294 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition, check_definition
+from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.groups import Geometry
-from stribeck.contacts.regime import Regime
+from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, REGIMES, Regime, friction_share, regime_numbers
+from stribeck.contacts.with_parts import exponents_of, known_speeds
+from stribeck.curves.coordinate import Over
+from stribeck.curves.friction_path import FrictionPath
 from stribeck.curves.line_source import LineSource
+from stribeck.curves.regime import Transition
 from stribeck.curves.result import StribeckCurve, path_of
+from stribeck.curves.stribeck_curve import begun
 from stribeck.files.datasets import Column, listed
 from stribeck.files.results import Labelled, Tabled
+from stribeck.numerics.events import Event
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
-from stribeck.regimes.margin_scan import SCANNED, Crossing, Margin, Scan, physical_bounds, scanned_rtol
 from stribeck.solver.base_solution import regime_of_state
+from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import check_rtol, solve
+from stribeck.solver.solve_error import SolveError
+
+# Groups between which is searched, where the solver is tested; the load also no further than the contact law holds.
+BOX = {"speed": (1e-12, 1e6), "load": (1e-8, 10.0), "relative_roughness": (1e-6, 1e3)}
+
+# What an input can be made at all [SI]: a speed from an atom's width in 100 s to that of sound, a fluid from gas to pitch,
+# a roughness from that of atoms.  Roughness ends with the contact itself: see physical_bounds.
+PHYSICAL = {"speed": (1e-12, 1e3), "viscosity": (1e-5, 1e8), "roughness": (1e-10, math.inf)}
+
+
+class Search(NamedTuple):
+    """How far and how finely the regimes of one geometry are searched."""
+
+    lightest: float
+    heaviest: Callable[[Contact], float]
+    roughest: Callable[[Contact], float]
+    largest_group: float  # Load group up to which the solver is tested, where the contact law allows it
+    rtol: float  # Smallest tolerance of margins: a ball takes a tenth of a second or more for each state
+    coarse: float  # Smallest tolerance of the curves on which they are looked for, before they are located
+
+
+SEARCHES: dict[Geometry, Search] = {
+    "line": Search(
+        1e-6, lambda each: math.pi / 4 * each.modulus * each.radius, lambda each: each.hertz.half_width, 10.0, 0.0, 0.0
+    ),
+    "point": Search(
+        1e-9, lambda each: 4 / 3 * each.modulus * each.radius**2, lambda each: each.hertz.indentation, 1e4, 3e-3, 1e-2
+    ),
+}
+
+
+def scanned_rtol(contact: Contact, rtol: float) -> float:
+    """Return the tolerance of margins."""
+    return max(rtol, SEARCHES[contact.groups.geometry].rtol)
+
+
+def physical_bounds(contact: Contact, name: str) -> tuple[float, float]:
+    r"""Return between which values an input of a contact can be sought, whatever the model says beyond.
+
+    .. math:: F_N \le \frac{\pi}{4} E^* R \text{ on the line}, \quad \frac43 E^* R^2 \text{ on the ball} \;\;(a \le R),
+        \qquad h_\mathrm{rms} \le a \text{ and } u_\mathrm{Hz}
+    """
+    search = SEARCHES[contact.groups.geometry]
+    if name == "load":
+        low, high = search.lightest, search.heaviest(contact)
+    else:
+        low, high = PHYSICAL[name]
+    if name == "roughness":
+        high = search.roughest(contact)
+    if name == "speed":
+        slowest, fastest = known_speeds(contact)
+        low, high = max(low, slowest), min(high, fastest)
+    value = float(getattr(contact, name))
+    return (min(low, value), max(high, value)) if value > 0 else (low, high)
+
+
+def limits(contact: Contact, name: str) -> tuple[float, float]:
+    """Return the logarithms of the factors of an input between which it is possible and the groups stay in the box."""
+    groups = contact.groups
+    highest = min(SEARCHES[groups.geometry].largest_group, largest_load(contact.law))
+    box = BOX | {"load": (BOX["load"][0], highest)}
+    n_speed, n_load, n_roughness = exponents_of(contact)[name]
+    n_roughness -= groups.scaling.roughness_exponent * n_load
+    low, high = _possible_factors(contact, name)
+    for group, n in (("speed", n_speed), ("load", n_load), ("relative_roughness", n_roughness)):
+        value = float(getattr(groups, group))
+        if n == 0 or value == 0:
+            continue
+        ends = sorted(math.log(end / value) / n for end in box[group])
+        low, high = max(low, ends[0]), min(high, ends[1])
+    return min(low, 0.0), max(high, 0.0)
+
+
+def _possible_factors(contact: Contact, name: str) -> tuple[float, float]:
+    """Return the logarithms of the factors to the bounds of an input, of the speed also to those of the viscosity."""
+    is_for_both = name == "speed" and not contact.friction_of_asperities.uses_speed
+    names = ("speed", "viscosity") if is_for_both else (name,)
+    ends = [(getattr(contact, each), physical_bounds(contact, each)) for each in names]
+    return min(math.log(low / value) for value, (low, _) in ends), max(math.log(high / value) for value, (_, high) in ends)
+
+
+def with_smallest(contact: Contact, name: Over) -> Contact:
+    """Return the contact with the minimum speed or roughness of the box instead of zero."""
+    groups = contact.replace(**{name: 1.0}).groups
+    group = "speed" if name == "speed" else "relative_roughness"
+    return contact.replace(**{name: BOX[group][0] / float(getattr(groups, group))})
+
+
+REACH = 1e6  # Largest factor by which an input is changed
+
+ROUNDING = 1e-9  # Difference of logarithms of values that are the same
+
+# From load group 1 on the fluid's share may never fall below the bound of boundary lubrication, however slow the contact.
+DECADE = math.log(10.0)  # Range of ln(speed) over whose slow end the share is extrapolated to slow speed
+MAX_SHARE_CHANGE = 0.02  # Change of the share over half a decade from which it is extrapolated
+SAFETY_OF_LIMIT = 1.5  # Factor by which its limit must exceed the bound for slower speeds not to be searched
+
+SCANNED: tuple[Over, ...] = ("speed", "load", "roughness")
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """Where another regime begins along one input."""
+
+    regime: Regime  # The regime that is entered
+    value: float  # Value of the input there [SI]
+    factor: float  # The same over its present value; infinite where that is zero
+    interval_95: tuple[float, float] | None = None  # That of the factor, where inputs have errors
+
+
+@dataclass(frozen=True)
+class Margin:
+    """The nearest changes of regime along one input, all other inputs kept."""
+
+    name: str  # Speed, load, roughness or viscosity
+    less: Crossing | None  # The first change with less of it, within what was searched
+    more: Crossing | None  # The same with more of it
+    searched: tuple[float, float]  # Values between which was searched [SI]: until a change, or where it can be no more
+
+    def crossing_into(self, regime: str) -> Crossing | None:
+        """Return the nearer crossing into a regime, or None."""
+        found = [mark for mark in (self.less, self.more) if mark is not None and mark.regime == regime]
+        return min(found, key=lambda mark: abs(math.log(mark.factor)) if 0 < mark.factor < math.inf else 0.0, default=None)
+
+
+@dataclass
+class Scan:
+    """The search for changes of regime along one input after another."""
+
+    contact: Contact
+    present: Regime
+    rtol: float
+    definition: Definition
+    on_point: Callable[[int, int], object] | None
+    whole: FrictionPath | None = None  # The path of a curve over one of the inputs that is solved already
+    state: RefinedState | None = None  # The contact's own state, where it is known
+    done: int = 0
+
+    def along(self, name: Over) -> Margin:
+        """Return the changes along one input."""
+        value, contact = float(getattr(self.contact, name)), self.contact
+        if value == 0:
+            found = self._from_zero(name)
+        elif contact.speed == 0 or contact.friction_of_asperities.is_frictionless or contact.roughness == 0:
+            found = Margin(name, None, None, (value, value))  # these hold the regime, whatever else changes
+        else:
+            (less, lowest), (more, highest) = self._outwards(contact, name, limits(contact, name))
+            found = Margin(name, less, more, (lowest, highest))
+        self.done += 1
+        return found
+
+    def _from_zero(self, name: Over) -> Margin:
+        """Return the change with more of an input that is zero."""
+        if self.contact.friction_of_asperities.is_frictionless or (name == "roughness" and self.contact.speed == 0):
+            return Margin(name, None, None, (0.0, 0.0))
+        if self.contact.roughness == 0 and name == "speed":
+            return Margin(name, None, Crossing("hydrodynamic", 0.0, math.inf), (0.0, 0.0))
+        start = with_smallest(self.contact, name)
+        _, (more, highest) = self._outwards(start, name, (0.0, limits(start, name)[1]), math.inf)
+        if more is not None:
+            # A regime that the smallest value is in already begins at zero itself.
+            more = Crossing(more.regime, more.value if more.value > getattr(start, name) else 0.0, math.inf)
+        return Margin(name, None, more, (0.0, highest))
+
+    def _outwards(
+        self, start: Contact, name: Over, ways: tuple[float, float], reach: float = REACH
+    ) -> list[tuple[Crossing | None, float]]:
+        """Return the first change of regime on both ways, logarithms of factors, and up to which value it was searched."""
+        value = float(getattr(start, name))
+        here = math.log(value)
+        ends = [here + math.copysign(min(abs(way), math.log(reach)), way) for way in ways]
+        try:
+            path = self._path(start, name, here, ends)
+        except SolveError:
+            return [(None, value), (None, value)]
+        return [self._towards(path, value, end) for end in ends]
+
+    def _path(self, start: Contact, name: Over, here: float, ends: list[float]) -> FrictionPath:
+        """Return the path of a contact as far as it is known: its own state, or a curve that is solved already."""
+        whole = self.whole
+        if whole is not None and whole.source.coordinate.over == name and whole.source.rtol <= self.rtol:
+            first, last = whole.source.ends
+            is_inside = first - ROUNDING <= here <= last + ROUNDING
+            if is_inside and whole.coefficients == (*coefficients(start, None, None), self.definition):
+                return whole
+        bounds, state = (math.exp(ends[0]), math.exp(ends[1])), self.state if start is self.contact else None
+        path = begun(start, name, bounds, max(self.rtol, SEARCHES[start.groups.geometry].coarse), self.definition, state)
+        if start is self.contact and isinstance(path.source, LineSource):
+            self.state = path.source.state_at(here)
+        return path
+
+    def _towards(self, path: FrictionPath, value: float, end: float) -> tuple[Crossing | None, float]:
+        """Return the first change of regime from a value to a coordinate, and the value up to which it was searched."""
+        here = math.log(value)
+        outward = math.copysign(1.0, end - here)
+
+        def is_enough(found: FrictionPath) -> bool:
+            begin = found.source.ends[:: int(outward)][0]
+            return self._first_change(found, begin, _reached(found, end, outward)) is not None or (
+                outward < 0 and _stays_mixed(found)
+            )
+
+        reached = float(np.clip(end, *path.source.ends))
+        change = self._first_change(path, here, reached)
+        if change is None and outward * (end - reached) > ROUNDING and not (outward < 0 and _stays_mixed(path)):
+            try:
+                path = path.continued(end, is_enough, self._report)
+            except SolveError:
+                return None, value * math.exp(reached - here)
+            if path.source.outcome is Outcome.INTERRUPTED:
+                raise KeyboardInterrupt
+            begin, reached = reached, _reached(path, end, outward)
+            change = self._first_change(path, begin, reached)
+        if change is None:
+            return None, value * math.exp(reached - here)
+        regime, mark, event = change
+        place = value if event is None else path.located(mark, event, min(path.source.accepted(None), self.rtol)).value
+        return Crossing(regime, place, place / value), place
+
+    def _report(self, low: float, high: float) -> None:
+        if self.on_point is not None:
+            self.on_point(self.done, len(SCANNED))
+
+    def _first_change(self, path: FrictionPath, here: float, end: float) -> tuple[Regime, Transition, Event | None] | None:
+        """Return the regime entered first on the way, the transition and where it is; nowhere if it is there already."""
+        low, high = sorted((here, end))
+        inside = [s for s in path.source.places.tolist() if low < s < high]
+        places = np.array([here, *(inside if here < end else inside[::-1]), end])
+        places, fluid, contact, viscous = path.known(places)
+        first = REGIMES[int(regime_numbers(fluid[0], friction_share(contact[0], viscous[0])))]
+        if first != self.present:
+            return first, Transition.BOUNDARY_END, None
+        hydrodynamic = path.first(Transition.HYDRODYNAMIC_START, places, fluid, contact, viscous)
+        boundary = path.first(Transition.BOUNDARY_END, places, fluid, contact, viscous)
+        if self.present == "hydrodynamic":  # whatever the fluid carries, while asperities cause little friction
+            if hydrodynamic is None:
+                return None
+            share = float(path.parts(np.array([hydrodynamic.place]))[0][0])
+            return "boundary" if share <= BOUNDARY_FLUID_SHARE else "mixed", Transition.HYDRODYNAMIC_START, hydrodynamic
+        if hydrodynamic is not None and (boundary is None or abs(hydrodynamic.place - here) < abs(boundary.place - here)):
+            return "hydrodynamic", Transition.HYDRODYNAMIC_START, hydrodynamic
+        if boundary is None:
+            return None
+        return "boundary" if self.present == "mixed" else "mixed", Transition.BOUNDARY_END, boundary
+
+
+def _reached(path: FrictionPath, end: float, outward: float) -> float:
+    """Return how far a path leads towards an end, not beyond it: there the friction of asperities may be unknown."""
+    return outward * min(outward * path.source.ends[1 if outward > 0 else 0], outward * end)
+
+
+def _stays_mixed(path: FrictionPath) -> bool:
+    """Return whether the fluid's share ends above its bound, extrapolated as a geometric series of half decades of speed."""
+    first, last = path.source.ends
+    if path.source.coordinate.over != "speed" or last - first < DECADE:
+        return False
+    slow, middle, fast = path.fluid_shares(first + DECADE * np.array([0.0, 0.5, 1.0])).tolist()
+    first, second = fast - middle, middle - slow
+    if not 0 <= second < min(first, MAX_SHARE_CHANGE):
+        return False
+    return bool(slow - second**2 / (first - second) > SAFETY_OF_LIMIT * BOUNDARY_FLUID_SHARE)
+
 
 THRESHOLD = 5e-3  # Logarithm of the factor below which a contact is said to stand at the threshold
 

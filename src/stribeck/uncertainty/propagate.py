@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -16,6 +17,7 @@ from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.parts import PART_INPUTS
 from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
 from stribeck.contacts.typical_errors import follows_surface, typical_errors
+from stribeck.curves.coordinate import Over
 from stribeck.curves.regime import Transition
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.dual import Dual
@@ -27,10 +29,11 @@ from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.schema import Input
 from stribeck.quantities.uncertain import relative_error
 from stribeck.quantities.units import InputError, checked_kind, show
+from stribeck.solver.solve_error import SolveError
 from stribeck.uncertainty.result import Spread, Uncertainty
 from stribeck.uncertainty.states import LOG_STEP, VISCOUS, SampledStates, films_of
 
-__all__ = ["STATE_RTOL", "errors_of_kept_inputs", "inputs_tied_to", "propagate"]
+__all__ = ["STATE_RTOL", "Band", "errors_of_kept_inputs", "friction_band", "inputs_tied_to", "propagate"]
 
 SAMPLES = 20_000  # Random samples of the inputs
 SEED = 20261122  # Fixed, so that results repeat
@@ -269,3 +272,48 @@ def _transitions(contact: Contact, sigmas: Mapping[str, float], definition: Defi
         label = f"speed of the {mark}" if mark == Transition.MINIMUM else f"speed where {mark}"
         found.append(Spread(mark, label, value, value, (low, high), (lowest, highest), "speed"))
     return found
+
+
+# Points at which errors are propagated, by geometry: between them the ends of intervals are smooth in the logarithm
+BAND_POINTS = {"line": 13, "point": 7}
+
+
+@dataclass(frozen=True, eq=False)
+class Band:
+    """The 95 % interval of the friction along a curve."""
+
+    values: Array  # Speeds, loads or roughnesses at which errors were propagated, in SI units
+    low: Array  # Lower end of the interval over the friction for the inputs as given [-]
+    high: Array  # Upper end of the same
+
+    def along(self, values: Array, friction: Array) -> tuple[Array, Array]:
+        """Return the ends of the interval of friction at other places."""
+        at, known = np.log(values), np.log(self.values)
+        low, high = (friction * np.interp(at, known, part, left=np.nan, right=np.nan) for part in (self.low, self.high))
+        return low, high
+
+
+def friction_band(
+    contact: Contact,
+    errors: Mapping[str, Any],
+    ends: Sequence[float] | Array,
+    definition: Definition = "balanced",
+    over: Over = "speed",
+    *,
+    on_point: Callable[[int, int], object] | None = None,
+) -> Band | None:
+    """Return the 95 % interval of friction between two speeds, loads or roughnesses, as ``propagate`` has it."""
+    count = BAND_POINTS[contact.groups.geometry]
+    found = []
+    for i, value in enumerate(np.geomspace(ends[0], ends[1], count).tolist()):
+        try:
+            spread = propagate(contact.replace(**{over: value}), errors, definition=definition, transitions=False)["friction"]
+        except (InputError, SolveError):
+            continue
+        finally:
+            if on_point is not None:
+                on_point(i + 1, count)
+        if spread.value != 0:
+            low, high = sorted(end / spread.value for end in spread.interval_95)
+            found.append((value, max(low, 0.0), high))
+    return Band(*np.array(found).T) if len(found) > 1 else None
