@@ -11,7 +11,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.cases.case import Case
-from stribeck.cases.fit_settings import CONTACT_INPUTS, FitSettings
+from stribeck.cases.fit_settings import CONTACT_INPUTS
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction_rules import RULES
 from stribeck.experiments.common_curve import Agreement, Points, agreement, basis, departure, knots_of, overlapping, power_law
@@ -19,7 +19,7 @@ from stribeck.files.datasets import Column
 from stribeck.files.results import Exported, Labelled, Record
 from stribeck.files.writing import PathLike
 from stribeck.fits.case_file import case_of
-from stribeck.fits.measurements import Data, Measurements, measurements_of
+from stribeck.fits.measurements import Data, Measurements, error_of, measurements_of
 from stribeck.quantities.formats import format_percent
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import Card, Told
@@ -247,7 +247,8 @@ def master_curve(data: Data, case: PathLike | Case | Contact) -> MasterCurve:
     rows = measurements_of(data, settings)
     used, notes = _usable(rows)
     contacts = [contact.replace(speed=1.0, **inputs) for inputs in used.inputs]
-    error = _relative_error(used, settings)
+    absolute = error_of(used, settings)
+    error = None if absolute is None else absolute / used.friction
     found = [_collapse(over, used, contacts, error) for over in ABSCISSAS]
     best = sorted(found, key=lambda each: each.ratio)
     return MasterCurve(used, tuple(best), error is not None, (*rows.notes, *notes))
@@ -280,16 +281,6 @@ def _usable(data: Measurements) -> tuple[Measurements, list[str]]:
         run_in=(),
         files=tuple(data.files[i] for i in kept) if data.files else (),
     ), [f"Curves with fewer than {FEWEST_ROWS} rows left out: {left_out}."]
-
-
-def _relative_error(data: Measurements, settings: FitSettings) -> Array | None:
-    """Return the relative standard errors of friction, of the rows or of the settings; None where there are none."""
-    relative, absolute = settings.relative_error, settings.absolute_error
-    if data.error is not None:
-        return data.error / data.friction
-    if relative is None and absolute is None:
-        return None
-    return np.asarray(np.hypot(relative or 0.0, (absolute or 0.0) / data.friction))
 
 
 def _collapse(over: str, data: Measurements, contacts: list[Contact], error: Array | None) -> Collapse:

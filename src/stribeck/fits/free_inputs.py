@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.contact import Contact
@@ -56,22 +56,25 @@ def free_inputs(contact: Contact, data: Measurements, names: Sequence[str], sett
             raise InputError(f"alpha is free, but this law has only {contact.alpha:g}; free beta or roughness instead.")
         values = {curve: value for curve, each in enumerate(contacts) if (value := getattr(each, name, None)) is not None}
         if not values:
-            raise InputError(f"{name} is free, but no curve has one: it belongs to {_owner(name)}; give it in the case.")
+            of = PART_INPUTS[name].of if name in PART_INPUTS else "another contact"
+            raise InputError(f"{name} is free, but no curve has one: it belongs to {of}; give it in the case.")
+        also = ("beta",) if name == "roughness" and settings.scales_surface and "beta" not in names else ()
         for owner, curves in _owners(name, data, settings).items():
             own = [value for curve, value in values.items() if curves is None or curve in curves]
             if not own:
                 continue
-            differ = max(own) > min(own)
-            start = 1.0 if differ else own[0]
+            smallest, largest = min(own), max(own)
+            differ = largest > smallest
+            start = 1.0 if differ else smallest
             if start == 0:
                 raise InputError(f"{name} is 0 in the case; a fit looks for factors on it, so give it a first value.")
-            each_free = replace(_free_input(name, curves, start, differ, settings, contact), owner=owner)
-            if min(own) < 0:
-                raise InputError(f"{name} is {min(own):g} in the case; a fit looks for factors on it, so it must be positive.")
-            smallest, largest = min(own), max(own)
-            if name == "roughness" and settings.scales_surface and "beta" not in names:
-                each_free = replace(each_free, also=("beta",))
-            found.append(_in_range(each_free, smallest, largest))
+            low, high = _bounds(name, start, differ, settings, contact)
+            if smallest < 0:
+                raise InputError(f"{name} is {smallest:g} in the case; a fit looks for factors on it, so it must be positive.")
+            low, high = _in_range(name, low, high, smallest, largest)
+            given = settings.priors.get(name)
+            prior = (math.log(given.value / start), math.log(given.factor)) if given else None
+            found.append(FreeInput(name, curves, start, low, high, prior, differ, also, owner))
     return tuple(found)
 
 
@@ -83,39 +86,30 @@ def _owners(name: str, data: Measurements, settings: FitSettings) -> dict[str | 
     return {label: tuple(i for i, each in enumerate(labels) if each == label) for label in labels}
 
 
-def _owner(name: str) -> str:
-    """Return the part of the contact that has a parameter of this name."""
-    return PART_INPUTS[name].of if name in PART_INPUTS else "another contact"
-
-
-def _in_range(free: FreeInput, smallest: float, largest: float) -> FreeInput:
-    """Return a free input whose bounds leave all its values in the range of its law."""
-    row = PART_INPUTS.get(free.name)
+def _in_range(name: str, low: float, high: float, smallest: float, largest: float) -> tuple[float, float]:
+    """Return bounds of the logarithm of a factor that leave all values of an input in the range of its law."""
+    row = PART_INPUTS.get(name)
     if row is None:
-        return free
-    low, high = row.range
-    low = max(free.low, math.log(low / smallest)) if low > 0 else free.low
-    return replace(free, low=low, high=min(free.high, math.log(high / largest)))
+        return low, high
+    least, most = row.range
+    low = max(low, math.log(least / smallest)) if least > 0 else low
+    return low, min(high, math.log(most / largest))
 
 
-def _free_input(
-    name: str, curves: tuple[int, ...] | None, start: float, is_factor: bool, settings: FitSettings, contact: Contact
-) -> FreeInput:
-    low, high = -math.log(DEFAULT_FACTOR), math.log(DEFAULT_FACTOR)
-    prior = settings.priors.get(name)
-    if is_factor and (name in settings.bounds or prior):
+def _bounds(name: str, start: float, is_factor: bool, settings: FitSettings, contact: Contact) -> tuple[float, float]:
+    """Return the bounds of the logarithm of a factor, by default far beside its first value."""
+    if is_factor and (name in settings.bounds or name in settings.priors):
         raise InputError(
             f"{name} has bounds or a prior in [fit], but its values differ between the curves and share one factor; "
             f"list {name} under per_curve, or leave bounds and prior out."
         )
-    if name in settings.bounds:
-        ends = settings.bounds[name]
-        if not ends[0] <= start <= ends[1]:
-            limits = " to ".join(_text(name, end, contact) for end in ends)
-            raise InputError(f"{name} starts at {_text(name, start, contact)}, outside its bounds {limits}.")
-        low, high = math.log(ends[0] / start), math.log(ends[1] / start)
-    mean_and_width = (math.log(prior.value / start), math.log(prior.factor)) if prior else None
-    return FreeInput(name, curves, start, low, high, mean_and_width, is_factor)
+    if name not in settings.bounds:
+        return -math.log(DEFAULT_FACTOR), math.log(DEFAULT_FACTOR)
+    ends = settings.bounds[name]
+    if not ends[0] <= start <= ends[1]:
+        limits = " to ".join(_text(name, end, contact) for end in ends)
+        raise InputError(f"{name} starts at {_text(name, start, contact)}, outside its bounds {limits}.")
+    return math.log(ends[0] / start), math.log(ends[1] / start)
 
 
 def _text(name: str, value: float, contact: Contact) -> str:

@@ -20,6 +20,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.cases.fit_settings import FitSettings
+from stribeck.fits.measurements import error_of
 from stribeck.fits.model import FrictionModel, Prediction
 from stribeck.fits.states import States
 from stribeck.quantities.units import InputError
@@ -93,15 +94,12 @@ class Objective:
 
 def objective(model: FrictionModel, states: States, settings: FitSettings, robust: bool) -> Objective:
     """Return the objective that the data and the settings ask for."""
-    data = model.data
-    if data.error is not None:
-        return Objective(model, states, data.error, False, robust)
-    relative, absolute = settings.relative_error, settings.absolute_error
-    if absolute is not None:
-        return Objective(model, states, np.hypot((relative or 0.0) * data.friction, absolute), False, robust)
-    if relative is not None:
-        return Objective(model, states, np.full(len(data), relative), True, robust)
-    return Objective(model, states, None, settings.noise == "relative", robust)
+    sigma, relative = error_of(model.data, settings), settings.relative_error
+    if sigma is None:
+        return Objective(model, states, None, settings.noise == "relative", robust)
+    if model.data.error is None and settings.absolute_error is None and relative is not None:
+        return Objective(model, states, np.full(len(sigma), relative), True, robust)
+    return Objective(model, states, sigma, False, robust)
 
 
 MAD = 1.482602218505602  # Standard deviation over median absolute deviation of a normal distribution

@@ -25,7 +25,7 @@ from stribeck.files.table_reading import read_table
 from stribeck.files.text_table import TextTable
 from stribeck.files.writing import PathLike, path_of
 from stribeck.fits.columns import abscissa_of, columns_of, has_column, known_name, with_errors_named
-from stribeck.fits.repeats import Row, average_repeats
+from stribeck.fits.repeats import Averaged, Row, average_repeats
 from stribeck.fits.rig import prepared, temperature_note
 from stribeck.fits.stated import entries_of, inputs_said
 from stribeck.fits.strokes import without_stops
@@ -99,6 +99,14 @@ class Measurements(Exported, Shown, ByValue):
         return self.columns(), rows, {"title": "Measured friction", "file": self.path}
 
 
+def error_of(data: Measurements, settings: FitSettings) -> Array | None:
+    """Return the standard error of friction of each row, or that of the settings; None where there is none."""
+    relative, absolute = settings.relative_error, settings.absolute_error
+    if data.error is not None or relative is absolute is None:
+        return data.error
+    return np.asarray(np.hypot((relative or 0.0) * data.friction, absolute or 0.0))
+
+
 def read_file(path: PathLike, settings: FitSettings) -> Measurements:
     """Return the measured friction curves of one file, with what its name and the settings say of it."""
     table = with_errors_named(read_table(path_of(path), settings.header_row, knows=known_name, sheet=settings.sheet))
@@ -133,10 +141,10 @@ def read_file(path: PathLike, settings: FitSettings) -> Measurements:
             runs.append(of_runs[i])
     if not rows:
         raise InputError(f"{path}: no row holds both {abscissa.replace('_', ' ')} and friction; check the columns.")
-    averaged = None
+    averaged = Averaged(rows, (), (), "error" in columns)
     if "error" not in columns and settings.repeats is not False and (run or settings.repeats):
         averaged = average_repeats(rows, runs, settings.run_in == "keep")
-        rows = rows if averaged is None else averaged.rows
+        rows = averaged.rows
     names, of_row, differing = _curves(table.path, rows, settings, "curve" in columns or len(frictions) > 1)
     said, of_file = inputs_said(table, settings, Path(path).name, given)
     differing = tuple({**of_file, **inputs} for inputs in differing)
@@ -146,7 +154,7 @@ def read_file(path: PathLike, settings: FitSettings) -> Measurements:
         abscissa=against,
         values=np.array([rows[i][2] for i in order]),
         friction=np.array([rows[i][3] for i in order]),
-        error=np.array([rows[i][4] for i in order]) if "error" in columns or (averaged and averaged.has_errors) else None,
+        error=np.array([rows[i][4] for i in order]) if averaged.has_errors else None,
         curve=np.array([of_row[i] for i in order]),
         curves=names,
         inputs=differing,
@@ -155,10 +163,10 @@ def read_file(path: PathLike, settings: FitSettings) -> Measurements:
             *_notes(table, columns, empty, made, run),
             *map(_idle, idle),
             *temperature_note(table),
-            *(() if averaged is None else averaged.notes),
+            *averaged.notes,
         ),
         taken=_taken(columns, written, (*made, *said), run),
-        run_in=() if averaged is None else averaged.run_in,
+        run_in=averaged.run_in,
     )
     _check_spread(found, frictions)
     return found
@@ -399,21 +407,20 @@ def _labels(read: Sequence[Measurements]) -> list[str]:
     return [f"{path} ({i})" for i, path in enumerate(paths, 1)]
 
 
-def _errors(read: Sequence[Measurements], settings: FitSettings) -> Any:
+def _errors(read: Sequence[Measurements], settings: FitSettings) -> Array | None:
     """Return the standard errors of all rows; files without any have those of the settings."""
-    if all(each.error is None for each in read):
+    with_errors = next((each for each in read if each.error is not None), None)
+    if with_errors is None:
         return None
-    relative, absolute = settings.relative_error, settings.absolute_error
     found = []
     for each in read:
-        if each.error is None and relative is None and absolute is None:
-            with_errors = next(other for other in read if other.error is not None)
+        error = error_of(each, settings)
+        if error is None:
             raise InputError(
                 f"{each.path or 'some data'} has no errors of friction, and {with_errors.path or 'others'} has; give "
                 "relative_error or absolute_error in [fit] for the files without."
             )
-        given = np.hypot((relative or 0.0) * each.friction, absolute or 0.0)
-        found.append(given if each.error is None else each.error)
+        found.append(error)
     return np.concatenate(found)
 
 

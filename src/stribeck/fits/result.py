@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from enum import Enum
 from typing import Annotated, Any
 
@@ -208,7 +208,6 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
 
     def to_dict(self) -> dict[str, Any]:
         """Return values, intervals (infinite where open), tests, rows and outcome, ready for JSON."""
-        quality = {name: getattr(self.quality, name) for name in self.quality.__dataclass_fields__}
         return {
             "converged": self.converged,
             "outcome": self.outcome.name,
@@ -227,12 +226,8 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
             "noise": self.noise,
             "logarithmic": self.logarithmic,
             "robust": self.robust,
-            "quality": quality | {"messages": list(self.quality.messages)},
-            "undetermined": [
-                {"names": list(u.names), "exponents": list(u.exponents)}
-                | {"standard_error": u.standard_error, "message": u.message}
-                for u in self.undetermined
-            ],
+            "quality": asdict(self.quality),
+            "undetermined": [asdict(each) for each in self.undetermined],
             "notes": list(self.notes),
             "definition": self.definition,
             "contact_law": self.law,
@@ -375,10 +370,9 @@ def notes_of(
     notes = []
     for each in inputs:
         if each.at_bound:
-            value = f"{each.value:.4g}" if each.is_factor else format_si(each.value, each.dimension, 4)
             notes.append(
-                f"{each.label} ended at its bound {value}: the data would move it further, and it has no standard error. "
-                "Widen the bound, or free fewer inputs."
+                f"{each.label} ended at its bound {format_value(each)}: the data would move it further, and it has no standard "
+                "error. Widen the bound, or free fewer inputs."
             )
         if _implausible(each):
             notes.append(

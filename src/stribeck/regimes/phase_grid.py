@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -163,14 +163,14 @@ def empty_diagram(
     kind, table = KINDS[physics["geometry"]], None if contact is None else contact.INPUTS
     counts, rtol = _points(points, kind), kind.rtol if rtol is None else rtol
     axes = {name: _axis(name, given[name], table, counts[name]) for name in ("load", "roughness")}
-    corners = Diagram(contact, axes | {"speed": np.ones(1)}, boundary_friction, beta, definition, rtol, physics)
+    diagram = Diagram(contact, axes | {"speed": np.ones(1)}, boundary_friction, beta, definition, rtol, physics)
     if given["speed"] is None:
         # From the lowest plateau to the highest branch of the outermost rows.
-        ends = [end for i, j in product((0, -1), repeat=2) for end in corners.ends(i, j)]
+        ends = [end for i, j in product((0, -1), repeat=2) for end in diagram.ends(i, j)]
         axes["speed"] = np.geomspace(min(ends), max(ends), counts["speed"])
     else:
         axes["speed"] = _axis("speed", given["speed"], table, counts["speed"])
-    return Diagram(contact, axes, boundary_friction, beta, definition, rtol, physics)
+    return replace(diagram, axes=axes)
 
 
 def _points(points: int | Mapping[str, int] | None, kind: Kind) -> dict[str, int]:
@@ -277,7 +277,7 @@ def _formula_speeds(diagram: Diagram, groups: Groups, unit: Array) -> dict[str, 
     from stribeck.asymptotics import load_sharing, transitions
 
     if not diagram.kind.has_formulas:
-        return {name: np.full(unit.shape, np.nan) for name in FORMULA_SPEEDS}
+        return dict.fromkeys(FORMULA_SPEEDS, np.full(unit.shape, np.nan))
     boundary_friction, beta = diagram.coefficient, diagram.beta
     with np.errstate(all="ignore"):
         shares = load_sharing.speed_at_fluid_share.function
