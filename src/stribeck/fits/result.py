@@ -371,8 +371,8 @@ def notes_of(
     for each in inputs:
         if each.at_bound:
             notes.append(
-                f"{each.label} ended at its bound {format_value(each)}: the data would move it further, and it has no standard "
-                "error. Widen the bound, or free fewer inputs."
+                f"{each.label} ended at its bound {format_value(each)}: the data would move it further, and it has no "
+                "standard error. Widen the bound, or free fewer inputs."
             )
         if _implausible(each):
             notes.append(

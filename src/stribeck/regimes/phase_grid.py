@@ -222,20 +222,13 @@ MERGING = "roughness at which the minimum of friction disappears"
 def diagram_dataset(diagram: Diagram) -> xarray.Dataset:
     """Return a diagram with units, long names and provenance."""
     groups, speed_groups = _row_groups(diagram)
-    speeds = _formula_speeds(diagram, groups, speed_groups)
-    speed_unit, roughness_unit = diagram.unit("speed"), diagram.unit("roughness")
     columns: dict[str, Column] = {
         name: (each.dims, diagram.table[name], diagram.unit(each.unit), each.label) for name, each in VARIABLES.items()
     }
-    columns |= {name: (ROW, speeds[name], speed_unit, label) for name, label in FORMULA_SPEEDS.items()}
-    weakens = np.isfinite(speeds["formula_speed_at_minimum"]).astype(np.int8)
-    columns["formula_velocity_weakening"] = (ROW, weakens, "1", "whether friction falls with speed somewhere, by the formula")
-    for name, line, label in (
-        ("formula_roughness_without_minimum", _formula_merging(diagram, groups), f"{MERGING}, by the law of mixed friction"),
-        ("roughness_without_minimum", diagram.merging, f"{MERGING}, on solved states"),
-    ):
-        if line is not None:
-            columns[name] = ("load", line, roughness_unit, label)
+    columns |= _formula_columns(diagram, groups, speed_groups)
+    if diagram.merging is not None:
+        label = f"{MERGING}, on solved states"
+        columns["roughness_without_minimum"] = ("load", diagram.merging, diagram.unit("roughness"), label)
     if diagram.contact is not None:
         columns["load_group"] = ("load", np.asarray(groups.load)[:, 0], "1", "load group")
         columns["roughness_group"] = ("roughness", np.asarray(groups.roughness)[0], "1", "roughness group")
@@ -272,34 +265,34 @@ def _row_groups(diagram: Diagram) -> tuple[Groups, Array]:
     return Groups(speed, load, roughness, **states[0][0].physics), speed
 
 
-def _formula_speeds(diagram: Diagram, groups: Groups, unit: Array) -> dict[str, Array]:
-    """Return the transitions that the formulas give, in the units of the axis; nan where they have none."""
+def _formula_columns(diagram: Diagram, groups: Groups, unit: Array) -> dict[str, Column]:
+    """Return what the formulas give, in the units of the axes; nan where they have none."""
     from stribeck.asymptotics import load_sharing, transitions
 
-    if not diagram.kind.has_formulas:
-        return dict.fromkeys(FORMULA_SPEEDS, np.full(unit.shape, np.nan))
-    boundary_friction, beta = diagram.coefficient, diagram.beta
-    with np.errstate(all="ignore"):
-        shares = load_sharing.speed_at_fluid_share.function
-        found = {
-            "formula_speed_at_5_percent_fluid": shares(groups, BOUNDARY_FLUID_SHARE),
-            "formula_speed_at_half_fluid": shares(groups, 0.5),
-            "formula_speed_boundary_to_mixed": transitions.speed_boundary_to_mixed.function(groups),
-            "formula_speed_at_minimum": transitions.speed_at_minimum.function(groups, boundary_friction, beta),
-            "printed_speed_boundary_to_mixed": transitions.speed_boundary_to_mixed.function(groups, printed=True),
-            "printed_speed_at_minimum": transitions.speed_at_minimum.function(groups, boundary_friction, beta, printed=True),
-        }
-        smooth = (np.asarray(groups.roughness) == 0) | (not transitions.speed_at_minimum.holds_for(groups.law))
-        return {name: np.where(smooth, np.nan, np.broadcast_to(values, unit.shape) / unit) for name, values in found.items()}
-
-
-def _formula_merging(diagram: Diagram, groups: Groups) -> Array:
-    from stribeck.asymptotics import transitions
-
-    loads = np.asarray(groups.load)[:, 0]
-    if not (diagram.kind.has_formulas and transitions.speed_at_minimum.holds_for(groups.law)):
-        return np.full(len(loads), np.nan)
-    line = np.asarray(transitions.roughness_without_minimum(loads, diagram.coefficient, diagram.beta))
-    if diagram.contact is None:
-        return line
-    return line / float(diagram.contact.replace(roughness=1.0).groups.roughness)
+    boundary_friction, beta, loads = diagram.coefficient, diagram.beta, np.asarray(groups.load)[:, 0]
+    speeds = dict.fromkeys(FORMULA_SPEEDS, np.full(unit.shape, np.nan))
+    merging = np.full(len(loads), np.nan)
+    if diagram.kind.has_formulas:
+        holds = transitions.speed_at_minimum.holds_for(groups.law)
+        with np.errstate(all="ignore"):
+            shares, minimum = load_sharing.speed_at_fluid_share.function, transitions.speed_at_minimum.function
+            found = {
+                "formula_speed_at_5_percent_fluid": shares(groups, BOUNDARY_FLUID_SHARE),
+                "formula_speed_at_half_fluid": shares(groups, 0.5),
+                "formula_speed_boundary_to_mixed": transitions.speed_boundary_to_mixed.function(groups),
+                "formula_speed_at_minimum": minimum(groups, boundary_friction, beta),
+                "printed_speed_boundary_to_mixed": transitions.speed_boundary_to_mixed.function(groups, printed=True),
+                "printed_speed_at_minimum": minimum(groups, boundary_friction, beta, printed=True),
+            }
+            smooth = (np.asarray(groups.roughness) == 0) | (not holds)
+            speeds = {name: np.where(smooth, np.nan, np.broadcast_to(each, unit.shape) / unit) for name, each in found.items()}
+        if holds:
+            group = 1.0 if diagram.contact is None else float(diagram.contact.replace(roughness=1.0).groups.roughness)
+            merging = np.asarray(transitions.roughness_without_minimum(loads, boundary_friction, beta)) / group
+    columns: dict[str, Column] = {
+        name: (ROW, speeds[name], diagram.unit("speed"), label) for name, label in FORMULA_SPEEDS.items()
+    }
+    weakens = np.isfinite(speeds["formula_speed_at_minimum"]).astype(np.int8)
+    columns["formula_velocity_weakening"] = (ROW, weakens, "1", "whether friction falls with speed somewhere, by the formula")
+    label = f"{MERGING}, by the law of mixed friction"
+    return columns | {"formula_roughness_without_minimum": ("load", merging, diagram.unit("roughness"), label)}
