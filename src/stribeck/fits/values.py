@@ -92,7 +92,8 @@ def unit_in(table: TextTable, name: str, meaning: str, settings: FitSettings) ->
 
 def numbers(table: TextTable, name: str, meaning: str, settings: FitSettings) -> Array:
     """Return the numbers of a column in SI units as they stand, NaN where a value is missing."""
-    dimension, noun = dimension_of(meaning, settings), meaning.replace("_", " ")
+    dimension = dimension_of(meaning, settings)
+    noun = "a slide-to-roll ratio" if meaning == "slide_to_roll" else meaning.replace("_", " ")
 
     def factor(unit: str, where: str) -> float:
         if meaning == "hersey_number" and has_dimension(unit or "-", "wavenumber"):
