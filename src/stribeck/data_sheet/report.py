@@ -21,15 +21,13 @@ from stribeck.contacts.contact import model_words
 from stribeck.contacts.parts import PART_INPUTS
 from stribeck.curves.result import StribeckCurve
 from stribeck.files.writing import PathLike, atomic_write, check_writable, need_extra, path_of
-from stribeck.fits.measurements import Measurements
-from stribeck.fits.reading import read_measurements
+from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.plot.curve import draw_report
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, show
-from stribeck.regimes.levers import MAX_FACTOR, cheapest_levers
+from stribeck.regimes.advice import MAX_FACTOR, cheapest_levers, regime_sentence, ways_to
 from stribeck.regimes.overview import Overview, overview_of
-from stribeck.regimes.sentences import regime_sentence, ways_to
 from stribeck.solver.numbers import main_rows
 from stribeck.uncertainty.result import Uncertainty
 

@@ -26,11 +26,11 @@ from stribeck.explorer.inputs.inputs import Abscissa, Inputs, from_case, refuse_
 from stribeck.explorer.inputs.url import check_length
 from stribeck.files.table_reading import read_table
 from stribeck.files.toml import parse_toml
+from stribeck.fits.columns import known_name
 from stribeck.fits.fit import fit
-from stribeck.fits.measurements import Measurements
-from stribeck.fits.reading import read_measurements
+from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.result import Fit
-from stribeck.fits.table.columns import ABSCISSAS, known_name
+from stribeck.fits.values import ABSCISSAS
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError
 from stribeck.surfaces.analysis import analyse
