@@ -13,9 +13,17 @@ import numpy as np
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.bench.raw import Raw
-from stribeck.fits.table.correlated import FEWEST, FEWEST_BLOCKS, error_of_mean, errors_of_means, memory
-from stribeck.fits.table.repeats import CLEAR, LARGEST_NOISE, SAME_SPEED
-from stribeck.fits.table.strokes import REST_SPEED
+from stribeck.fits.repeats import (
+    CLEAR,
+    FEWEST,
+    FEWEST_BLOCKS,
+    LARGEST_NOISE,
+    SAME_SPEED,
+    error_of_mean,
+    errors_of_means,
+    memory,
+)
+from stribeck.fits.strokes import REST_SPEED
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.units import InputError
 

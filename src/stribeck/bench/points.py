@@ -11,8 +11,7 @@ import numpy as np
 from stribeck._types import Array, Flags, Indices
 from stribeck.bench.passes import Pass
 from stribeck.bench.raw import Raw
-from stribeck.fits.table.correlated import FEWEST
-from stribeck.fits.table.repeats import CLEAR, SAME_SPEED, Row, counted, run_in
+from stribeck.fits.repeats import CLEAR, FEWEST, SAME_SPEED, Row, counted, run_in
 from stribeck.quantities.formats import format_error, format_si
 
 __all__ = ["Point", "points_of", "run_in_of"]
