@@ -17,8 +17,7 @@ from stribeck.quantities.formats import MIN_STATED_SHARE, figures, format_factor
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import table_lines
 from stribeck.quantities.units import InputError, show
-from stribeck.regimes.levers import strongest_lever
-from stribeck.regimes.sentences import answer_sentence, regime_sentence, step_text, ways_to
+from stribeck.regimes.advice import answer_sentence, regime_sentence, step_text, strongest_lever, ways_to
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.numbers import constant_groups, main_rows, report_rows
 
@@ -28,8 +27,7 @@ if TYPE_CHECKING:
     from stribeck.curves.regime import Landmark
     from stribeck.curves.result import StribeckCurve
     from stribeck.quantities.number import Number
-    from stribeck.regimes.overview import Overview
-    from stribeck.regimes.verdict import CurveVerdict
+    from stribeck.regimes.overview import CurveVerdict, Overview
 
 SCREEN_WIDTH = 80  # Columns of the terminal for which notes of an answer are shortened.
 
