@@ -54,9 +54,6 @@ SAME = {
     "missing values": PLAIN + "\n2;\n;0.3\nNaN;0.1\n3;n/a",
     "other columns": "time;speed [m/s];friction;remark\n" + "9;0.001;0.5;x\n9;0.01;0.25;x\n9;0.1;0.0625;x\n9;1;0.125;x",
     "trailing separators": PLAIN.replace("\n", ";\n", 2).replace("friction;", "friction"),
-    "a byte-order mark": "\ufeff" + PLAIN,
-    "UTF-16": PLAIN.encode("utf-16"),
-    "a Windows file": "speed [µm/s];friction\r\n1e3;0.5\r\n1e4;0.25\r\n1e5;0.0625\r\n1e6;0.125\r\n".encode("cp1252"),
 }
 
 
@@ -285,10 +282,9 @@ def test_a_wrong_fit_table_is_refused_by_the_case_file(subtests, tmp_path):
             assert where in str(caught.value) and what in str(caught.value)
 
 
-def test_a_hostile_file_is_read_in_time_that_grows_with_its_length(subtests, tmp_path_factory):
+def test_a_hostile_file_is_read_in_time_that_grows_with_its_length(subtests, tmp_path):
     for text in [",".join(f"c{i}" for i in range(60_000)), "a,b\n" + 60_000 * "1" + "x,2\n"]:
         with subtests.test(text=text):
-            tmp_path = tmp_path_factory.mktemp("case")
             path = tmp_path / "hostile.csv"
             path.write_text(text + "\n")
             began = time.process_time()

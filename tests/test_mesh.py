@@ -25,16 +25,6 @@ def graded(order=12, towards=1.0, levels=10):
 # Nodes
 
 
-def test_zero_is_an_edge_of_the_coarsest_panels_which_reach_far_enough(subtests):
-    for scale, reach in [(1.0, 16.0), (0.25, 3.0), (8.0, 200.0)]:
-        with subtests.test(scale=scale, reach=reach):
-            edges = base_edges(scale, reach)
-            assert 0.0 in edges
-            assert np.array_equal(edges, -edges[::-1])
-            assert edges[-1] >= reach
-            assert np.diff(edges).min() == scale
-
-
 def test_the_reference_rule_integrates_its_own_polynomials(subtests):
     for order in [1, 2, 7, 16]:
         with subtests.test(order=order):

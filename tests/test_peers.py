@@ -40,10 +40,6 @@ def test_it_finds_our_mixed_state(textbook, load_benchmark, solved):
     assert abs(found.viscous / truth.friction(definition=peers.DEFINITION).fluid - 1) < 5e-3
 
 
-def test_where_its_grid_is_too_coarse_it_says_so(textbook):
-    assert textbook.solve(textbook.grid(101), 1e-6)[-1] > 1e-6
-
-
 def test_a_peer_that_is_missing_is_named_with_the_way_to_install_it(load_benchmark, monkeypatch):
     peers = load_benchmark("peers")
     for name in ("tamaas", "ContactMechanics"):

@@ -323,6 +323,15 @@ def test_the_regions_are_those_of_the_states_and_rows_without_states_stay_white(
     assert not np.isfinite(left * right).any()
 
 
+def test_the_merging_is_drawn_where_it_lies_in_the_picture(plot, diagram):
+    label = "above: no minimum of friction"
+    for height, seen in ((1e-3, True), (0.5, False)):
+        figure = plot.plot_phase_diagram(diagram.assign(roughness_without_minimum=("load", [height, height])))
+        assert (label in texts(figure)) == seen
+        lines = [line for line in figure.axes[0].lines if line.get_label() == label]
+        assert {y for line in lines for y in line.get_ydata()} == ({height} if seen else set())
+
+
 def test_the_space_shows_planes_surfaces_and_lines(plot, si_diagram, tmp_path):
     figure = plot.plot_phase_space(si_diagram, tmp_path / "space.svg")
     assert (tmp_path / "space.svg").stat().st_size > 20_000

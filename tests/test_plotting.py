@@ -7,6 +7,7 @@ from functools import cache
 import matplotlib
 import numpy as np
 import pytest
+from ball_data import BALL
 from command_line import HEAVY, PDMS, run_python
 
 import stribeck as sb
@@ -134,6 +135,13 @@ def test_the_axis_that_is_wanted_is_below_and_the_other_one_above(curve, subtest
         picture(curve, abscissa="sped")
 
 
+def test_the_hersey_number_of_a_ball_has_its_radius():
+    ball = sb.stribeck_curve(BALL, speed=(0.7 * BALL.speed, 1.4 * BALL.speed), points=2, rtol=1e-2)
+    axes = ball.plot(abscissa="hersey").axes[0]
+    assert axes.get_xlabel() == "Hersey number $ηUR/F_N$"
+    np.testing.assert_array_equal(line(axes, "from the fluid").get_xdata(), ball.hersey_number)
+
+
 def test_minimum_and_equal_shares_are_marked_where_they_were_located(curve):
     axes = picture(curve, abscissa="hersey").axes[0]
     mark = line(axes, "minimum")
@@ -252,6 +260,16 @@ def test_the_ending_chooses_the_format(subtests, solution, tmp_path):
             assert (tmp_path / f"profile{ending}").read_bytes().startswith(begins)
     with pytest.raises(sb.InputError, match=r"must end in \.png, \.svg or \.pdf\.$"):
         solution.plot(tmp_path / "profile.bmp")
+
+
+def test_an_existing_picture_is_kept_unless_forced(solution, tmp_path):
+    path = tmp_path / "picture.png"
+    path.write_text("precious")
+    with pytest.raises(sb.InputError, match="exists already and is kept"):
+        solution.plot(path)
+    assert path.read_text() == "precious"
+    solution.plot(path, force=True)
+    assert path.read_bytes().startswith(b"\x89PNG")
 
 
 def test_a_missing_matplotlib_is_one_sentence_with_the_remedy(curve, monkeypatch):

@@ -116,14 +116,13 @@ def test_a_case_file_holds_a_ball(tmp_path):
     assert sb.load_case(path).contact == ball()
 
 
-def test_a_case_file_that_is_no_ball_is_refused_with_a_sentence(subtests, tmp_path_factory):
+def test_a_case_file_that_is_no_ball_is_refused_with_a_sentence(subtests, tmp_path):
     for text, sentence in [
         (CASE.format(load="30 N/m"), r"\[contact\] load = '30 N/m' is a load per unit length; .* that of a cylinder"),
         (CASE.format(load="1.3 N").replace('"point"', '"line"'), "load = '1.3 N' is a force; expected a load per unit length"),
         (CASE.format(load="1.3 N").replace('"point"', '"ball"'), "geometry = 'ball' must be 'line' or 'point'"),
     ]:
         with subtests.test(text=text, sentence=sentence):
-            tmp_path = tmp_path_factory.mktemp("case")
             path = tmp_path / "ball.toml"
             path.write_text(text)
             with pytest.raises(sb.InputError, match=sentence):

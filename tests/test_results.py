@@ -127,6 +127,8 @@ def test_a_state_and_a_curve_are_in_si_units(state, curve):
     assert sb.solve(state.groups).to_dataset().gap.units == "u_Hz"
     films = curve.observable("central_gap") * CONTACT.hertz.indentation
     np.testing.assert_allclose(curve.to_si()["central_film_thickness"], films, rtol=1e-15)
+    places = curve.observable("minimum_position") * CONTACT.hertz.half_width
+    np.testing.assert_allclose(curve.to_dataset().minimum_film_position, places, rtol=1e-14)
     with pytest.raises(sb.InputError, match="to_si needs the Hertz scales"):
         sb.stribeck_curve(load=0.1, roughness=1e-4, speed=[1e-4, 2e-4]).to_si()
 

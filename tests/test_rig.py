@@ -319,10 +319,9 @@ def test_a_unit_of_a_column_that_is_not_there_is_said_to_be_idle(read_ball):
 
 
 @pytest.mark.quick
-def test_what_has_no_unit_is_given_none(subtests, tmp_path_factory):
+def test_what_has_no_unit_is_given_none(subtests, tmp_path):
     for name in ["run", "curve"]:
         with subtests.test(name=name):
-            tmp_path = tmp_path_factory.mktemp("case")
             case = tmp_path / "case.toml"
             example = (Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").read_text()
             case.write_text(f'{example}\n[fit.units]\n{name} = "s"\n')

@@ -86,10 +86,9 @@ SIZES = {
 }
 
 
-def test_sizes_above_a_matrix_give_the_spacing_along_each_axis(subtests, tmp_path_factory):
+def test_sizes_above_a_matrix_give_the_spacing_along_each_axis(subtests, tmp_path):
     for case in SIZES:
         with subtests.test(case=case):
-            tmp_path = tmp_path_factory.mktemp("case")
             scan = read(tmp_path, SIZES[case] + matrix())
             assert scan.spacing == pytest.approx((1e-6, 0.5e-6), rel=1e-9)
             assert scan.heights == pytest.approx(MAP.T * 1e-6, abs=6e-12)
@@ -119,10 +118,9 @@ PROFILES = {
 }
 
 
-def test_a_profile_in_any_layout_is_the_same_profile(subtests, tmp_path_factory):
+def test_a_profile_in_any_layout_is_the_same_profile(subtests, tmp_path):
     for case in PROFILES:
         with subtests.test(case=case):
-            tmp_path = tmp_path_factory.mktemp("case")
             scan = read(tmp_path, PROFILES[case])
             assert scan.spacing == pytest.approx((0.156e-6,), rel=1e-3)
             assert scan.heights == pytest.approx(LINE * 1e-6, abs=6e-11)
@@ -163,7 +161,7 @@ def test_a_profile_without_names_may_number_its_points(tmp_path):
     assert scan.heights == pytest.approx(LINE * 1e-6, abs=6e-11) and "numbers the points" in scan.notes[0]
 
 
-def test_marks_of_instruments_for_no_height_are_missing_and_named(subtests, tmp_path_factory):
+def test_marks_of_instruments_for_no_height_are_missing_and_named(subtests, tmp_path):
     for mark in [
         "-9999",
         "-9999.0",
@@ -179,7 +177,6 @@ def test_marks_of_instruments_for_no_height_are_missing_and_named(subtests, tmp_
         "*****",
     ]:
         with subtests.test(mark=mark):
-            tmp_path = tmp_path_factory.mktemp("case")
             cells = [f"{v:.4f}" for v in LINE]
             cells[50] = cells[51] = cells[200] = mark
             line = read(tmp_path, "x (um),z (um)\n" + rows(X, cells, form=("{:.3f}", "{}")))

@@ -348,6 +348,7 @@ def test_what_cannot_be_solved_or_asked_of_a_state_is_refused_in_a_sentence(subt
         *((r"rtol = .*from 1e-11.* to 0.01", lambda rtol: sb.solve(GROUPS, rtol=rtol), each) for each in tolerances),
         *((kind, sb.solve, each) for each in (0.1, "case.toml", (1e-2, 0.1, 1e-4), None)),
         (r"shape \(2,\).*stribeck_curve", sb.solve, sb.Groups(np.array([1e-2, 1e-3]), 0.1, 1e-4)),
+        ("Hertz scales", state.to_si),
         ("boundary_friction = -0.1", state.friction, -0.1),
         ("beta = 0", state.friction, 1.0, 0.0),
         ("'balanced' or 'published'", state.friction, 1.0, 1.0, "both"),

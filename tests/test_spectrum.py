@@ -64,6 +64,13 @@ def test_the_spectrum_ends_at_its_cut_offs():
     assert SHAPES[0].spectrum.at(np.array([9.9e3, 2e8])).tolist() == [0.0, 0.0]
 
 
+def test_scaling_keeps_the_shape():
+    scaled = SHAPES[1].scaled(5e-6)
+    assert scaled.spectrum.rms_height == pytest.approx(5e-6, rel=1e-13, abs=0)
+    ratio = scaled.spectrum.density / SHAPES[1].spectrum.density
+    assert ratio == pytest.approx((5e-6 / 3e-7) ** 2, rel=1e-12, abs=0)
+
+
 def test_a_factor_in_place_of_a_height_is_refused(subtests):
     """A surface of 1 µm with waves of up to 628 µm cannot have a roughness of half a metre."""
     rough = SHAPES[0]

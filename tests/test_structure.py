@@ -338,12 +338,6 @@ def test_the_tests_that_docstrings_name_are_there():
     assert len(named) > 5 and named <= tests, named - tests
 
 
-def test_the_public_names_exist_once_and_in_a_list():
-    assert isinstance(stribeck.__all__, list)
-    assert len(set(stribeck.__all__)) == len(stribeck.__all__)
-    assert all(hasattr(stribeck, name) for name in stribeck.__all__)
-
-
 def test_a_public_name_hides_no_module():
     for name in stribeck.__all__:
         found = getattr(stribeck, name)

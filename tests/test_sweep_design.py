@@ -62,10 +62,9 @@ def test_a_list_takes_the_lists_together(tmp_path):
     assert design.groups.tolist() == [[1e-4, 0.1, 1e-3], [2e-4, 0.1, 0.0]]
 
 
-def test_a_random_design_fills_its_ranges_and_its_seed_repeats_it(subtests, tmp_path_factory):
+def test_a_random_design_fills_its_ranges_and_its_seed_repeats_it(subtests, tmp_path):
     for kind in ["random", "latin-hypercube", "sobol"]:
         with subtests.test(kind=kind):
-            tmp_path = tmp_path_factory.mktemp("case")
             text = RANDOM.format(kind=kind, points=64)
             design, again = load(tmp_path, text), load(tmp_path, text)
             other = load(tmp_path, text.replace("20261", "20262"))

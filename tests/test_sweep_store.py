@@ -146,15 +146,6 @@ def test_the_command_exports_every_number_text_and_unit(subtests, copy, filled, 
             assert call(capsys, "sweep", file, "--out", store, "--export", path, "--force").code == 0
 
 
-def test_a_table_has_a_row_for_each_state_of_a_grid(filled, tmp_path):
-    for ending, write_it in ((".csv", filled.to_csv), (".parquet", filled.to_parquet)):
-        write_it(tmp_path / f"sweep{ending}")
-        table = read(tmp_path / f"sweep{ending}")
-        assert table.columns[:3].tolist() == list(DIMS)
-        for name in ("speed_group", "load_group"):
-            assert table[name].tolist() == filled.columns[name].tolist()
-
-
 @pytest.mark.quick
 def test_what_lacks_its_library_is_one_sentence(filled, tmp_path, monkeypatch):
     sweep = functools.partial(sb.sweep, write(tmp_path, SMALL), tmp_path / "store", scheduler="tcp://127.0.0.1:1")

@@ -93,16 +93,6 @@ def test_calls_that_overlap_keep_one_blas_thread_until_the_last_ends(two_threads
     assert blas_threads() == {2}
 
 
-def test_a_call_that_raises_gives_the_threads_back(two_threads):
-    @one_blas_thread
-    def fails():
-        raise ValueError
-
-    with pytest.raises(ValueError):
-        fails()
-    assert blas_threads() == {2}
-
-
 def test_eight_threads_give_the_bits_of_one(two_threads):
     problems = [sb.Groups(speed, 0.1, 1e-3) for speed in np.geomspace(1e-5, 1e-1, 8)]
     start = threading.Barrier(8)

@@ -21,10 +21,9 @@ def heights():
 # --- the formats of instruments ---
 
 
-def test_a_map_in_a_real_format_is_read_back(subtests, tmp_path_factory, heights):
+def test_a_map_in_a_real_format_is_read_back(subtests, tmp_path, heights):
     for name, write in [("a.x3p", write_x3p), ("a.sdf", write_sdf), ("a.gwy", write_gwy)]:
         with subtests.test(name=name, write=write):
-            tmp_path = tmp_path_factory.mktemp("case")
             z = heights.copy()
             if name != "a.gwy":  # which has no mark for a missing point
                 z[3, 4] = np.nan
@@ -57,10 +56,9 @@ def test_what_a_file_declares_cannot_be_overruled(tmp_path, heights):
         read_topography(tmp_path / "a.x3p", channel="Phase")
 
 
-def test_a_damaged_file_is_refused_in_one_sentence(subtests, tmp_path_factory):
+def test_a_damaged_file_is_refused_in_one_sentence(subtests, tmp_path):
     for name in ["a.x3p", "a.sur"]:
         with subtests.test(name=name):
-            tmp_path = tmp_path_factory.mktemp("case")
             (tmp_path / name).write_bytes(b"\x00\xff\x03\x04 not heights")
             with pytest.raises(sb.InputError, match="is damaged or in a format that SurfaceTopography does not know"):
                 read_topography(tmp_path / name)
@@ -111,11 +109,10 @@ def test_a_scan_of_too_many_points_is_refused_before_they_are_read(tmp_path, hei
         read_topography(tmp_path / "a.x3p")
 
 
-def test_what_is_not_of_the_format_of_its_ending_is_told(subtests, tmp_path_factory):
+def test_what_is_not_of_the_format_of_its_ending_is_told(subtests, tmp_path):
     for content in [b"1 2 3\n4 5 6\n", b"hello world\n1 2 3\n", bytes(5000)]:
         for name in ["a.x3p", "a.sdf", "a.OPD"]:
             with subtests.test(content=content, name=name):
-                tmp_path = tmp_path_factory.mktemp("case")
                 (tmp_path / name).write_bytes(content)
                 for given in ({}, {"unit": "um", "spacing": "1 um"}):
                     with pytest.raises(sb.InputError, match=f"does not start like a {name[1:].lower()} file"):
@@ -156,10 +153,9 @@ DIALECTS = {
 }
 
 
-def test_a_map_in_any_dialect_of_text_is_read_back(subtests, tmp_path_factory, heights):
+def test_a_map_in_any_dialect_of_text_is_read_back(subtests, tmp_path, heights):
     for dialect in DIALECTS:
         with subtests.test(dialect=dialect):
-            tmp_path = tmp_path_factory.mktemp("case")
             header, separator, point = DIALECTS[dialect]
             rows = grid_rows(heights, 2.5)
             np.random.default_rng(84).shuffle(rows)
@@ -278,10 +274,9 @@ TEXTS = {
 }
 
 
-def test_text_that_is_no_topography_is_refused_by_line(subtests, tmp_path_factory):
+def test_text_that_is_no_topography_is_refused_by_line(subtests, tmp_path):
     for case in TEXTS:
         with subtests.test(case=case):
-            tmp_path = tmp_path_factory.mktemp("case")
             text, options, words = TEXTS[case]
             (tmp_path / "scan.csv").write_text(text)
             with pytest.raises(sb.InputError, match=words) as caught:

@@ -1,7 +1,5 @@
 """Traces: the derivatives of functions of fields against differences, and their values against plain ones."""
 
-import pickle
-
 import numpy as np
 import pytest
 
@@ -69,10 +67,3 @@ def test_of_plain_values_a_function_of_traces_is_the_plain_function():
     for function in FUNCTIONS.values():
         together, each = function(**rows), [function(**{name: value[k] for name, value in rows.items()}) for k in range(2)]
         np.testing.assert_allclose(together, each, rtol=1e-13)
-
-
-def test_products_of_operators_are_made_once_and_left_out_of_a_pickle():
-    inner = Matrix(np.eye(N))
-    assert FIRST.of(inner) is FIRST.of(inner)
-    again = pickle.loads(pickle.dumps(FIRST))
-    np.testing.assert_array_equal(again.matrix, FIRST.matrix)

@@ -27,10 +27,9 @@ def gel_case(folder, **changes):
     return path
 
 
-def test_commands_begin_with_what_must_hold_for_a_gel(subtests, capsys, tmp_path_factory):
+def test_commands_begin_with_what_must_hold_for_a_gel(subtests, capsys, tmp_path):
     for load, law in [("1 mN", ""), ("20 mN", ", with another law and")]:
         with subtests.test(load=load, law=law):
-            tmp_path = tmp_path_factory.mktemp("case")
             said = call(capsys, "solve", gel_case(tmp_path, load=load), "--rtol", "1e-2").out
             assert said.replace("\n", " ").startswith(
                 f"The model applies{law} if adhesion is small and no liquid flows in pores"
