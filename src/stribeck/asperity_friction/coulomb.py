@@ -6,9 +6,16 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from stribeck.asperity_friction.law import AsperityFriction
+from stribeck.quantities.docstrings import told
 from stribeck.quantities.outputs import AREA
 
 __all__ = ["Coulomb", "as_asperity_friction", "needs_area"]
+
+# What the methods say that return the coefficient.
+OF_CONTACT = (
+    {"contact": "LineContact, PointContact or None\n    The contact, of which nothing is needed."},
+    "float\n    The coefficient [-].",
+)
 
 
 @dataclass(frozen=True)
@@ -43,34 +50,14 @@ class Coulomb(AsperityFriction):
         """The coefficient."""
         return f"{self.boundary_friction:g}"
 
+    @told(*OF_CONTACT)
     def factor(self, contact: Any) -> float:
-        """Return the coefficient.
-
-        Parameters
-        ----------
-        contact : LineContact, PointContact or None
-            The contact, of which nothing is needed.
-
-        Returns
-        -------
-        float
-            The coefficient [-].
-        """
+        """Return the coefficient."""
         return self.boundary_friction
 
+    @told(*OF_CONTACT)
     def coefficient_at_small_area(self, contact: Any) -> float:
-        """Return the coefficient, which holds at any area.
-
-        Parameters
-        ----------
-        contact : LineContact, PointContact or None
-            The contact, of which nothing is needed.
-
-        Returns
-        -------
-        float
-            The coefficient [-].
-        """
+        """Return the coefficient, which holds at any area."""
         return self.boundary_friction
 
 

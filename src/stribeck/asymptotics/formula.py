@@ -20,7 +20,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.asymptotics.constants import BALL_FILM_CONSTANT, FILM_CONSTANT
-from stribeck.asymptotics.documentation import VALUES, choices, completed
+from stribeck.asymptotics.documentation import VALUES, choices, completed, described
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.contact import model_words
 from stribeck.contacts.groups import Geometry, Groups
@@ -176,23 +176,9 @@ class Formula(Described, Generic[Arguments]):
         where = f"Range: {self.range}; the error there is at most {100 * self.worst:g} %{falls}."
         return "\n\n".join(textwrap.fill(each, 100, break_on_hyphens=False) for each in (where, f"Source: {self.source}."))
 
+    @described("Of the shape of the groups.", kind="ndarray of bool", groups="States.")
     def valid(self, groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0) -> Flags:
-        """Return where all limits hold: nowhere for groups of the other geometry or of another model.
-
-        Parameters
-        ----------
-        groups : Groups
-            States.
-        boundary_friction : float
-            Friction coefficient of the dry contact [-].
-        beta : float
-            Coefficient of the contact law [-].
-
-        Returns
-        -------
-        ndarray of bool
-            Of the shape of the groups.
-        """
+        """Return where all limits hold: nowhere for groups of the other geometry or of another model."""
         found = np.full(groups.shape, groups.geometry == self.geometry and groups.model == BASE_MODEL)
         for limit in self.limits:
             found = found & limit.holds(groups, _ratio(beta, boundary_friction))
@@ -251,19 +237,9 @@ class Formula(Described, Generic[Arguments]):
         if groups.law is not None and not self.holds_for(groups.law):
             raise InputError(f"{self.name} holds for the exponential contact law, not for {groups.law.name}; use solve.")
 
+    @described("Whether it holds.", kind="bool", law="The law; None is the exponential one.")
     def holds_for(self, law: AsperityLaw | None) -> bool:
-        """Return whether the formula was derived for a contact law; one of smooth contacts holds for every law.
-
-        Parameters
-        ----------
-        law : AsperityLaw or None
-            The law; None is the exponential one.
-
-        Returns
-        -------
-        bool
-            Whether it holds.
-        """
+        """Return whether the formula was derived for a contact law; one of smooth contacts holds for every law."""
         return self.plane == "smooth" or is_exponential(law)
 
     def _warn(self, what: str) -> None:

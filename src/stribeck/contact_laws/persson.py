@@ -36,7 +36,7 @@ from stribeck.quantities.results import ByValue
 from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError
 
-__all__ = ["GAMMA", "GAMMA_INPUT", "Integral", "PerssonLaw", "exponential_limit", "persson_law", "tabulate"]
+__all__ = ["GAMMA", "GAMMA_INPUT", "PerssonLaw", "exponential_limit", "persson_law"]
 
 GAMMA = 0.45  # Reduction of the elastic energy; 0.42 to 0.45 fit simulations [YP08].
 

@@ -16,12 +16,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 import scipy
 
 from stribeck._types import Array
-from stribeck.quantities.docstrings import told
+from stribeck.quantities.docstrings import Described, told
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import ByValue
@@ -40,15 +41,8 @@ TOO_HIGH = (
 
 
 @dataclass(frozen=True, eq=False)
-class Spectrum(ByValue):
+class Spectrum(ByValue, Described, title="Parameters"):
     r"""Isotropic power spectrum as a table, a power law between neighbouring points and zero outside.
-
-    Parameters
-    ----------
-    wavenumber : array_like
-        Wave numbers :math:`q` of the points, rising [1/m].
-    density : array_like
-        Spectrum :math:`C` of the surface in two dimensions there, positive [m^4].
 
     Raises
     ------
@@ -67,8 +61,8 @@ class Spectrum(ByValue):
     1.0
     """
 
-    wavenumber: Array
-    density: Array
+    wavenumber: Annotated[Array, "wave numbers :math:`q` of the points, rising", "1/m"]
+    density: Annotated[Array, "spectrum :math:`C` of the surface in two dimensions there, positive", "m^4"]
 
     def __post_init__(self) -> None:
         """Check the table and keep read-only copies."""

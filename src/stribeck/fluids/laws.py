@@ -2,7 +2,8 @@
 
 Each is a frozen class whose numbers are in SI units, and in a film in Hertz units: :meth:`Law.scaled` goes from the first to
 the second.  A new law is one class with the members of its protocol.  Its functions are written with those of numpy, so that
-they take values, and values with their derivatives (:mod:`stribeck.numerics.dual`): slopes follow.
+they take values, and values with their derivatives (:mod:`stribeck.numerics.dual`): slopes follow.  A law that
+somebody else wrote is checked: its derivatives, limits and scaling must agree with its values.
 """
 
 from __future__ import annotations

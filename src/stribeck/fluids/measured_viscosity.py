@@ -27,6 +27,7 @@ from stribeck.fluids.description import Fluid
 from stribeck.fluids.laws import RateLaw
 from stribeck.fluids.rheology.rate_laws import Carreau, Cross, PowerLaw
 from stribeck.numerics.settings import EPSILON
+from stribeck.quantities.docstrings import told
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import Card, Told
@@ -43,6 +44,10 @@ MAX_RISE = 3.0  # Standard errors of a rise of the viscosity with the rate from 
 NO_SCATTER = 1e-6  # Relative scatter below which values are as good as computed: no law wins by rounding
 POOR_FIT = 0.1  # Rms deviation of the viscosity above which a note says that no law follows it
 UNKNOWN = 0.5  # Standard error of the logarithm of a number above which a note says that the rates do not show it
+
+# What the functions say that fit a law.
+OF_LAW = {"law": f"{{{', '.join(map(repr, LAWS))}}}, optional\n    The law; by default the one that the values speak for."}
+FITTED = "FlowCurve\n    The law with the errors of its numbers, how far the values lie from it, and what must be known of it."
 
 
 @dataclass(frozen=True)
@@ -134,6 +139,7 @@ class FlowCurve(Told, Tabled):
         )
 
 
+@told(OF_LAW, FITTED)
 def flow_curve(rate: Any, viscosity: Any, *, law: str | None = None) -> FlowCurve:
     """Fit a law of shear thinning to a viscosity measured over the shear rate.
 
@@ -143,13 +149,6 @@ def flow_curve(rate: Any, viscosity: Any, *, law: str | None = None) -> FlowCurv
         Shear rates, positive, at least five that differ [1/s].
     viscosity : array_like, shape (n,)
         Viscosities there, positive [Pa s].
-    law : {"newtonian", "power-law", "cross", "carreau"}, optional
-        The law; by default the one that the values speak for.
-
-    Returns
-    -------
-    FlowCurve
-        The law with the errors of its numbers, how far the values lie from it, and what must be known of it.
 
     Raises
     ------
@@ -179,6 +178,7 @@ def flow_curve(rate: Any, viscosity: Any, *, law: str | None = None) -> FlowCurv
     return FlowCurve(rates, values, best.viscosity, best.law, best.errors, best.misfit, misfits, notes)
 
 
+@told(OF_LAW, FITTED)
 def read_flow_curve(path: str | os.PathLike[str], *, law: str | None = None) -> FlowCurve:
     """Read a viscosity over shear rate from a table and fit a law of shear thinning.
 
@@ -187,13 +187,6 @@ def read_flow_curve(path: str | os.PathLike[str], *, law: str | None = None) -> 
     path : str or path-like
         A text file or spreadsheet with a column of shear rates and one of viscosities, with units, such as
         ``shear rate [1/s]; viscosity [mPa*s]``; other columns are left out.
-    law : {"newtonian", "power-law", "cross", "carreau"}, optional
-        The law; by default the one that the values speak for.
-
-    Returns
-    -------
-    FlowCurve
-        See :func:`flow_curve`.
 
     Raises
     ------

@@ -96,8 +96,8 @@ def iso_vg(
 
 @told(OF_OIL, LIQUID)
 def oil(
-    viscosity_40: str | float = "46 cSt",
-    viscosity_100: str | float = "6.8 cSt",
+    viscosity_40: str | float = 46.0,
+    viscosity_100: str | float = 6.8,
     temperature: str | float = 40.0,
     density_15: str | float = 870.0,
 ) -> Liquid:

@@ -21,6 +21,7 @@ shear rate at which a liquid of them thins is that over its viscosity (rotation 
 from __future__ import annotations
 
 import difflib
+import inspect
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -45,10 +46,14 @@ class Preset(Described):
     """A row of the table of liquids: call it with its conditions."""
 
     label: Annotated[str, "what it is"]
-    conditions: Annotated[Mapping[str, Any], "conditions with their usual values"]
     make: Annotated[Callable[..., Liquid], "from conditions to a :class:`Liquid`"]
     source: Annotated[str, "where the numbers are from"]
     range: Annotated[str, "where they hold"]
+
+    @property
+    def conditions(self) -> dict[str, Any]:
+        """Conditions with their usual values."""
+        return {name: each.default for name, each in inspect.signature(self.make).parameters.items()}
 
     def __call__(self, **conditions: Any) -> Liquid:
         """Return the liquid under these conditions."""
@@ -60,7 +65,7 @@ class Preset(Described):
                 else f"its numbers hold at {self.range}; remove it"
             )
             raise InputError(f"{unknown[0]} is no condition of {self.label}; {has}.")
-        return self.make(**{**self.conditions, **conditions})
+        return self.make(**conditions)
 
 
 @told({"temperature": f"{TEMPERATURE}."}, LIQUID, IMPOSSIBLE)
@@ -93,7 +98,7 @@ def _water(T: float) -> float:
     return 1.790e-3 * math.exp((-1230 - T) * T / (36100 + 360 * T))
 
 
-def _silicone(grade: str | float, temperature: str | float = 25.0) -> Liquid:
+def _silicone(grade: str | float = 100.0, temperature: str | float = 25.0) -> Liquid:
     """Return a silicone oil (PDMS) of a grade: a number in cSt, or text with a unit."""
     given, is_text = grade, isinstance(grade, str)
     grade = 1e6 * to_si(given, "kinematic", "grade", "100 cSt") if is_text else to_si(given, "number", "grade", "100")
@@ -110,9 +115,10 @@ def _silicone(grade: str | float, temperature: str | float = 25.0) -> Liquid:
     return Liquid(f"silicone oil {grade:g} cSt at {T:g} degC", 1e-6 * kinematic * density, Fluid(), _SILICONE)
 
 
-def _make_liquid(name: str, viscosity: float, fluid: Fluid, source: str, stress: float | None = None) -> Callable[[], Liquid]:
-    liquid = Liquid(name, viscosity, fluid, source, None if stress is None else stress / viscosity)
-    return lambda: liquid
+def _fixed(label: str, viscosity: float, fluid: Fluid, source: str, range: str, stress: float | None = None) -> Preset:
+    """Return a liquid without conditions."""
+    liquid = Liquid(label, viscosity, fluid, source, None if stress is None else stress / viscosity)
+    return Preset(label, lambda: liquid, source, range)
 
 
 _SILICONE = (
@@ -139,56 +145,23 @@ class _Presets(dict[str, Preset]):
 PRESETS: Mapping[str, Preset] = MappingProxyType(
     _Presets(
         {
-            "water": Preset("water", {"temperature": 25.0}, water, "Cheng 2008", "0 to 100 degC"),
-            "glycerol-water": Preset(
-                "glycerol in water",
-                {"weight_fraction": 0.5, "temperature": 25.0},
-                glycerol_water,
-                "Cheng 2008",
-                "0 to 100 degC, all fractions",
-            ),
-            "silicone-oil": Preset(
-                "silicone oil",
-                {"grade": 100.0, "temperature": 25.0},
-                _silicone,
-                _SILICONE,
-                "5 to 1000 cSt; at -25 to 150 degC from 50 cSt",
-            ),
-            "iso-vg": Preset(
-                "mineral oil, ISO VG",
-                {"grade": 46.0, "temperature": 40.0, "viscosity_index": 100.0, "density_15": 870.0},
-                iso_vg,
-                SOURCE,
-                "5 to 3200 cSt at 40 degC, -20 to 150 degC",
-            ),
-            "oil": Preset(
-                "oil of two viscosities",
-                {"viscosity_40": 46.0, "viscosity_100": 6.8, "temperature": 40.0, "density_15": 870.0},
-                oil,
-                SOURCE,
-                "-20 to 150 degC",
-            ),
-            "pao-10": Preset(
+            "water": Preset("water", water, "Cheng 2008", "0 to 100 degC"),
+            "glycerol-water": Preset("glycerol in water", glycerol_water, "Cheng 2008", "0 to 100 degC, all fractions"),
+            "silicone-oil": Preset("silicone oil", _silicone, _SILICONE, "5 to 1000 cSt; at -25 to 150 degC from 50 cSt"),
+            "iso-vg": Preset("mineral oil, ISO VG", iso_vg, SOURCE, "5 to 3200 cSt at 40 degC, -20 to 150 degC"),
+            "oil": Preset("oil of two viscosities", oil, SOURCE, "-20 to 150 degC"),
+            "pao-10": _fixed(
                 "PAO 10 at 40 degC",
-                {},
-                _make_liquid("PAO 10 at 40 degC", 61.0e-6 * 821, Fluid(viscosity=Roelands(1.7e-8)), _OIL, OIL_EYRING_STRESS),
+                61.0e-6 * 821,
+                Fluid(viscosity=Roelands(1.7e-8)),
                 _OIL,
                 "40 degC, to 0.5 GPa",
+                OIL_EYRING_STRESS,
             ),
-            "xanthan": Preset(
-                "0.25 % xanthan in water",
-                {},
-                _make_liquid("0.25 % xanthan in water", 2.0, Fluid(Carreau(5.0, 0.35, 1.5e-3)), _XANTHAN),
-                _XANTHAN,
-                "25 degC, 0.1 to 1000 1/s",
+            "xanthan": _fixed(
+                "0.25 % xanthan in water", 2.0, Fluid(Carreau(5.0, 0.35, 1.5e-3)), _XANTHAN, "25 degC, 0.1 to 1000 1/s"
             ),
-            "saliva": Preset(
-                "saliva (a model)",
-                {},
-                _make_liquid("saliva (a model)", 0.02, Fluid(Cross(0.1, 0.6, 1.2e-3)), _SALIVA),
-                _SALIVA,
-                "37 degC, 10 to 1e4 1/s",
-            ),
+            "saliva": _fixed("saliva (a model)", 0.02, Fluid(Cross(0.1, 0.6, 1.2e-3)), _SALIVA, "37 degC, 10 to 1e4 1/s"),
         }
     )
 )

@@ -20,6 +20,7 @@ REQUIRED_MEMBERS = ("name", "parameters", "scaled", "deflection", "far_gap")
 
 SCALING_RTOL = 1e-6  # Largest difference of deflections in two units of length over the largest: rounding alone differs.
 
+NODES_PER_PANEL = 8  # Nodes of a panel of the mesh of the check.
 FAR_DISTANCE = 1e3  # Distance over the longest length of the body at which a load of pi/2 acts nearly as a point.
 FAR_GAP_TOLERANCE = 0.05  # Largest difference of gaps from a tenth of that distance on [u_Hz].
 
@@ -131,9 +132,6 @@ def _far_gap(solid: Solid, length: float) -> None:
                 f"by {np.ptp(far):.2g} u_Hz from {0.1 * FAR_DISTANCE:g} to {FAR_DISTANCE:g} times the longest of its "
                 f"lengths.",
             )
-
-
-NODES_PER_PANEL = 8  # Nodes of a panel of the mesh of the check.
 
 
 def _edges(far: float) -> Array:
