@@ -25,9 +25,8 @@ from stribeck.regimes.phase_diagram import phase_diagram
 from stribeck.solver.solve import solve
 from stribeck.solver.solve_error import SolveError
 from stribeck.strokes.stroke import stroke
-from stribeck.sweeps.dataset import open_sweep
 from stribeck.sweeps.design import load_sweep
-from stribeck.sweeps.sweep import sweep
+from stribeck.sweeps.sweep import open_sweep, sweep
 from stribeck.uncertainty.propagate import propagate
 
 __all__ = [

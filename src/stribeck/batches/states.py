@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.docstrings import Described
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS
+from stribeck.quantities.units import InputError
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.solve_error import SolveError, describe
@@ -62,6 +63,19 @@ class States(Described):
             return Groups(*self.groups[i].tolist(), **self.physics), None
         contact: Contact = self.contacts[i]
         return contact.groups, contact
+
+
+def contacts_at(base: Contact, columns: Mapping[str, Any]) -> tuple[Objects, Groups]:
+    """Return a contact for each state, changed by columns of objects, and their groups, with the parts of the first."""
+    contacts: Objects = np.empty(next(iter(columns.values())).shape if columns else (), dtype=object)
+    for i, index in enumerate(np.ndindex(contacts.shape)):
+        try:
+            contacts[index] = base.replace(**{name: column[index] for name, column in columns.items()})
+        except InputError as problem:
+            raise InputError(f"state {i}: {problem}" if contacts.size > 1 else str(problem)) from None
+    flat = [contact.groups for contact in contacts.ravel()]
+    arrays = {name: np.reshape([float(getattr(each, name)) for each in flat], contacts.shape) for name in GROUPS}
+    return contacts, replace(flat[0] if flat else base.groups, **arrays)
 
 
 @dataclass(frozen=True)

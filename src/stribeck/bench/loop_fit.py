@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from stribeck._types import Array, Flags, Indices
+from stribeck._types import Array, Flags
 from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.cases.reading import load_case
@@ -51,7 +51,6 @@ class Loop:
     over: str  # "position" or "time", what friction was measured over
     values: Array  # [m or s]
     friction: Array  # With the sign of the force against the motion [-]
-    rows: Indices  # Row of the file in which each stands
 
     def __len__(self) -> int:
         """Return the number of rows."""
@@ -63,12 +62,12 @@ def read_loop(path: PathLike) -> Loop:
     path = path_of(path)
     if not Path(path).is_file():
         raise InputError(f"{path}: there is no such file.")
-    found, rows = read_columns(path, ADVICE, *({name: over, "friction": FRICTION} for name, over in OVER.items()), gaps=True)
+    found, _ = read_columns(path, ADVICE, *({name: over, "friction": FRICTION} for name, over in OVER.items()), gaps=True)
     friction = found.pop("friction")
     [(over, values)] = found.items()
     if not (np.any(friction > 0) and np.any(friction < 0)):
         raise InputError(f"{path}: friction has one sign; a loop has friction of the way back below zero.")
-    return Loop(str(path), over, values, friction, rows)
+    return Loop(str(path), over, values, friction)
 
 
 SLOW = 0.1  # Speed over the largest below which a row is left out: at a reversal the rig gives way before the surfaces slide
@@ -243,7 +242,7 @@ class _LoopModel:
         self._known: dict[bytes, tuple[Array, Array, Array, Array]] = {}
         self.phase, sliding = self._phases(loop)
         self.left_out = int((~sliding).sum())
-        self.data = Loop(loop.path, loop.over, loop.values[sliding], loop.friction[sliding], loop.rows[sliding])
+        self.data = Loop(loop.path, loop.over, loop.values[sliding], loop.friction[sliding])
         self.phase = self.phase[sliding]
 
     def _phases(self, loop: Loop) -> tuple[Array, Flags]:

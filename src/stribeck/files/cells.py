@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Iterable
-from pathlib import Path
 
 from stribeck.quantities.units import InputError
 
@@ -88,15 +87,20 @@ def number_of(cell: str, decimal: str = ".") -> tuple[float, str] | None:
     return (float(text), unit) if NUMBER_WITH_POINT.fullmatch(text) else None
 
 
-def cells_of(line: str, separator: str, path: Path, number: int) -> list[str]:
-    """Return the cells of a line without quotes and white space around them; an empty ``separator`` is white space."""
+def cells_of(line: str, separator: str, where: str = "") -> list[str]:
+    """Return the cells of a line without quotes and white space around them; an empty ``separator`` is white space.
+
+    Where its quotes are wrong there are none, or of a line that has a place the refusal says so.
+    """
     if separator and '"' not in line:
         return [cell.replace("\N{NO-BREAK SPACE}", " ").strip() for cell in line.split(separator)]
     if separator:
         try:
             [cells] = csv.reader([line], delimiter=separator, skipinitialspace=True, strict=True)
         except (csv.Error, ValueError) as problem:
-            raise InputError(f"{path}: row {number} cannot be split into cells ({problem}); check its quotes.") from None
+            if not where:
+                return []
+            raise InputError(f"{where} cannot be split into cells ({problem}); check its quotes.") from None
         return [cell.replace("\N{NO-BREAK SPACE}", " ").strip() for cell in cells]
     words = [word.strip('"') or word for word in line.split()]
     if not any(mark in line for mark in "[("):

@@ -5,11 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Self
 
 from stribeck.files.cells import MISSING_CELLS, cells_of, has_number, is_missing, looks_like_units
-from stribeck.quantities.units import InputError
 
 # Separators of columns beside white space; the first of several in a line wins.
 COLUMN_SEPARATORS = ("\t", ";", ",", "|")
@@ -66,7 +64,7 @@ class Heading:
         end = next((k for k in range(i, len(lines)) if not lines[k].numeric), len(lines))
         sample = lines[i : min(end, i + SAMPLE_LINES)]
         separator = separator_of([line.text for line in sample])
-        filled = [[bool(cell) for cell in cells_of(line.text, separator, Path(), line.number)] for line in sample]
+        filled = [[bool(cell) for cell in cells_of(line.text, separator, f"row {line.number}")] for line in sample]
         width = max(len(each) - each[::-1].index(True) for each in filled if len(each) <= len(filled[0]))
         heading = cls(at=i, first=i, below=i, separator=separator, names=("",) * width)
         while width > 1 and i and all(map(is_missing, heading._padded(lines[i - 1]) or ("0",))):
@@ -77,32 +75,29 @@ class Heading:
     def at_line(cls, lines: Sequence[Line], i: int) -> Self:
         """Return the heading whose names stand in a line, whatever is below."""
         separator = _separator(lines[i].text)
-        names = tuple(cells_of(lines[i].text, separator, Path(), lines[i].number))
+        names = tuple(cells_of(lines[i].text, separator, f"row {lines[i].number}"))
         below = i + 1
         while below < min(len(lines), i + MAX_HEADING_LINES) and not lines[below].comment and not lines[below].numbers:
             below += 1
         plain = cls(at=i, first=i, below=below, separator=separator, names=names)
         return plain if below == len(lines) else plain._with_others(lines, range(i, below))
 
-    def row(self, text: str, path: Path, number: int, filled_up: bool = False) -> list[str]:
+    def row(self, text: str, where: str = "", filled_up: bool = False) -> list[str]:
         """Return the cells of a row, with as many as there are names if what differs is empty."""
         width = len(self.names)
-        cells = cells_of(text, self.separator, path, number)
+        cells = cells_of(text, self.separator, where)
         while len(cells) > width and not cells[-1]:
             cells.pop()
         if len(cells) != width and self.separator == "\t":
-            by_spaces = cells_of(text, "", path, number)
+            by_spaces = cells_of(text, "")
             cells = by_spaces if len(by_spaces) == width else cells
-        if len(cells) < width and (filled_up or not (self.is_bare or any(self.names[len(cells) :]))):
+        if 0 < len(cells) < width and (filled_up or not (self.is_bare or any(self.names[len(cells) :]))):
             cells += [""] * (width - len(cells))
         return cells
 
     def fits(self, line: Line) -> bool:
         """Return whether a line has a cell for each name."""
-        try:
-            return len(self.row(line.text, Path(), line.number, filled_up=self.separator == "\t")) == len(self.names)
-        except InputError:
-            return False
+        return len(self.row(line.text, filled_up=self.separator == "\t")) == len(self.names)
 
     def _with_others(self, lines: Sequence[Line], stack: Sequence[int]) -> Self:
         """Return the heading with the units and labels that other lines of the stack give."""
@@ -120,10 +115,7 @@ class Heading:
         return replace(self, units=units, labels=labels, first=first)
 
     def _padded(self, line: Line) -> list[str]:
-        try:
-            cells = self.row(line.text, Path(), line.number, filled_up=True)
-        except InputError:
-            return []
+        cells = self.row(line.text, filled_up=True)
         return cells if len(cells) == len(self.names) else []
 
     def _distinguishes_columns(self, labels: Sequence[str]) -> bool:
@@ -194,7 +186,7 @@ def _separators(line: Line) -> tuple[str, ...]:
 
 
 def _names(text: str, mark: str) -> list[str]:
-    return re.split(r"\s{2,}", text.strip()) if mark == WIDE_SPACE else _split(text, mark)
+    return re.split(r"\s{2,}", text.strip()) if mark == WIDE_SPACE else cells_of(text, mark)
 
 
 def separator_of(rows: Sequence[str]) -> str:
@@ -213,19 +205,10 @@ def _separator(text: str) -> str:
     return next((mark for mark in COLUMN_SEPARATORS if mark in text), "")
 
 
-def _split(text: str, separator: str) -> list[str]:
-    try:
-        return cells_of(text, separator, Path(), 0)
-    except InputError:
-        return []
-
-
 def _numbers_in(text: str) -> int:
     """Return how many cells of a line are numbers, taken for several where its quotes are wrong."""
-    try:
-        return sum(map(has_number, cells_of(text, _separator(text), Path(), 0)))
-    except InputError:
-        return sum(sign.isdigit() for sign in text)
+    cells = cells_of(text, _separator(text))
+    return sum(map(has_number, cells)) if cells else sum(sign.isdigit() for sign in text)
 
 
 def _are_units(cells: Sequence[str]) -> bool:

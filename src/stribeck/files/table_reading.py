@@ -215,7 +215,7 @@ def _count_settings(lines: list[Line], headings: list[Heading], knows: Callable[
     heading = headings[0]
     telling = 0
     cells = [
-        heading.row(line.text, Path(), line.number, filled_up=True)
+        heading.row(line.text, filled_up=True)
         for each in headings
         for line in [line for line in lines[each.below : each.end] if line.numeric][:SAMPLE_ROWS]
         if heading.fits(line)
@@ -262,7 +262,7 @@ def _body(
         i += 1
         if skipping or line.comment:
             continue
-        cells = heading.row(line.text, path, line.number, filled_up)
+        cells = heading.row(line.text, f"{path}: row {line.number}", filled_up)
         count = sum(map(has_number, cells))
         if count == 0 and not line.numeric and (len(cells) != width or sum(map(bool, cells)) < 2):
             continue  # text

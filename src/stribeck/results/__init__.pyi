@@ -20,9 +20,8 @@ from stribeck.solver.fields import Field
 from stribeck.solver.point.solution import PointSolution
 from stribeck.solver.solution import Profile, Solution
 from stribeck.strokes.result import Stroke
-from stribeck.sweeps.dataset import Sweep
 from stribeck.sweeps.design import SweepDesign
-from stribeck.sweeps.sweep import SweepProgress
+from stribeck.sweeps.sweep import Sweep, SweepProgress
 from stribeck.uncertainty.result import Spread, Uncertainty
 
 __all__ = [

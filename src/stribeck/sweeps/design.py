@@ -14,8 +14,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.batches.inputs import contacts_at
-from stribeck.batches.states import States
+from stribeck.batches.states import States, contacts_at
 from stribeck.cases.case import Case
 from stribeck.cases.law import KEYS_OF_SURFACES, LAW_KEY, Law, law_of_file
 from stribeck.cases.model_parts import PART_TABLES
