@@ -32,8 +32,6 @@ from stribeck.atlas.grid import (
     Region,
     breaks_from,
     chebyshev,
-    nodes,
-    to_coefficients,
 )
 from stribeck.atlas.table import COEFFICIENT_UNIT
 from stribeck.atlas.tables import TABLES, TableRow
@@ -55,7 +53,7 @@ def coarse_line(name: str, region: int, i: int) -> Array:
     row, counts = ROWS[name], PLANS[name].coarse_nodes
     where = row.grid.regions[region]
     kappa = roughness_at(where, float(nodes(counts[0])[i]))
-    loads = [float(where.log_load(y, np.asarray(kappa))) for y in nodes(counts[1])]
+    loads = [log_load_at(where, y, kappa) for y in nodes(counts[1])]
     return np.array([coarse_breaks(row, where, log_load, kappa) for log_load in loads])
 
 
@@ -85,13 +83,13 @@ def line(name: str, breaks: Array, region: int, i: int, j: int, k: int) -> Array
     """Return the tabulated functions for one node in roughness of a piece, shape (loads, speeds, functions)."""
     row, grid = ROWS[name], ROWS[name].grid
     where = grid.regions[region]
-    x = in_region(i, where.pieces[0], where.roughness_nodes[k : k + 1])
+    x = in_region(i, where.pieces[0], roughness_nodes(where)[k : k + 1])
     kappa = roughness_at(where, float(x[0]))
     found = []
     for y in in_region(j, where.pieces[1], nodes(where.nodes[1])):
         products = np.outer(chebyshev(x, BREAK_TERMS)[:, 0], chebyshev(np.array([y]), BREAK_TERMS)[:, 0])
         ends = breaks_from(np.einsum("qab,ab->q", breaks, products))
-        log_load = float(where.log_load(y, np.asarray(kappa)))
+        log_load = log_load_at(where, y, kappa)
         speeds = segment_nodes(where, ends, grid.power)
         values = solved(row, speeds, log_load, kappa, PLANS[name].rtol)
         values[: where.speeds[0], 0] -= grid.power * speeds[: where.speeds[0]]
@@ -104,7 +102,7 @@ def line(name: str, breaks: Array, region: int, i: int, j: int, k: int) -> Array
 def piece_blocks(where: Region, lines: Sequence[Array]) -> list[Array]:
     """Return the dense coefficients of the segments of a piece, each along speed, roughness, load and function."""
     values = np.stack(lines)  # roughness, load, speed, function
-    K, Y = np.linalg.inv(chebyshev(where.roughness_nodes, where.nodes[0]).T), to_coefficients(where.nodes[1])
+    K, Y = np.linalg.inv(chebyshev(roughness_nodes(where), where.nodes[0]).T), to_coefficients(where.nodes[1])
     found, first = [], 0
     for count in where.speeds:
         part = values[:, :, first : first + count]
@@ -159,7 +157,7 @@ def _kept_coarse(folder: Path, name: str, task: tuple[int, int]) -> Array:
 def _kept_line(folder: Path, name: str, breaks: tuple[Array, ...], task: tuple[int, int, int, int]) -> Array:
     region, i, j, k = task
     where = ROWS[name].grid.regions[region]
-    x = in_region(i, where.pieces[0], where.roughness_nodes[k : k + 1])
+    x = in_region(i, where.pieces[0], roughness_nodes(where)[k : k + 1])
     key = key_of(name, region, where.pieces[1], where.nodes[1], where.speeds, BREAK_TERMS, PLANS[name].rtol)
     return kept(folder, f"{key}-line-{j}-{round(float(x[0]), 9) + 0.0:+.9f}", partial(line, name, breaks[region], *task))
 
@@ -224,6 +222,31 @@ def main() -> None:
     arguments = parser.parse_args()
     for name in arguments.names:
         build(ROWS[name], arguments.target / ROWS[name].file, arguments.folder, arguments.workers)
+
+
+def nodes(count: int) -> Array:
+    """Return the zeros of a Chebyshev polynomial, ascending."""
+    return np.asarray(-np.cos(math.pi * (np.arange(count) + 0.5) / count))
+
+
+def roughness_nodes(region: Region) -> Array:
+    """Return the nodes of a piece in roughness, ascending in [-1, 1]."""
+    count = region.nodes[0]
+    return np.asarray(-np.cos(math.pi * np.arange(count) / (count - 1))) if region.nested else nodes(count)
+
+
+def to_coefficients(count: int) -> Array:
+    """Return the matrix from values at :func:`nodes` to Chebyshev coefficients."""
+    matrix = chebyshev(nodes(count), count) * (2 / count)
+    matrix[0] /= 2
+    return matrix
+
+
+def log_load_at(region: Region, coordinate: float, kappa: float) -> float:
+    """Return L at a coordinate, the inverse of :meth:`Region.load_coordinate`."""
+    delta = region.delta(np.asarray(kappa))
+    low, high = (np.log(end + delta) for end in region.logs)
+    return float(np.maximum(np.exp(low + 0.5 * (coordinate + 1) * (high - low)) - delta, 0.0))
 
 
 def segment_nodes(region: Region, ends: Array, power: int = 2) -> Array:

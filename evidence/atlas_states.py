@@ -12,6 +12,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.atlas.grid import MIN_SPEED, Region
+from stribeck.atlas.table import FRICTION_RADIUS
 from stribeck.atlas.tables import REFERENCE_SPECTRUM, TableRow
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.persson import persson_law
@@ -134,7 +135,7 @@ def tabulated(row: TableRow, observed: list[Any], log_speeds: Array, load: float
         scale = log_speeds + 0.5 * math.log(load)
         published, balanced = (np.log(values[f"viscous_{name}"]) - scale for name in ("published", "balanced"))
         return np.stack([odds, published, balanced, central, minimum, np.log(values["flux_gap"]), deflection], axis=1)
-    speed, far = np.exp(log_speeds), math.log(row.radius)
+    speed, far = np.exp(log_speeds), math.log(FRICTION_RADIUS)
     ends = far_film(row.model)
     couette = values["J_couette"] / speed + ends.couette * far
     poiseuille = values["J_poiseuille"] / speed + ends.poiseuille * far

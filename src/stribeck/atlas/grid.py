@@ -55,12 +55,6 @@ class Region:
     nested: bool = False  # Whether the nodes in roughness are the ends and the extrema of a Chebyshev polynomial
 
     @property
-    def roughness_nodes(self) -> Array:
-        """Nodes of a piece in roughness, ascending in [-1, 1]."""
-        count = self.nodes[0]
-        return np.asarray(-np.cos(math.pi * np.arange(count) / (count - 1))) if self.nested else nodes(count)
-
-    @property
     def has_rest(self) -> bool:
         """Whether the segments begin at rest, else at :data:`MIN_SPEED`."""
         return self.speeds[0] > 0
@@ -77,13 +71,13 @@ class Region:
 
     def load_coordinate(self, log_load: Array, kappa: Array) -> Array:
         """Return the coordinate in [-1, 1] of L = -ln(load)."""
-        delta = self._delta(kappa)
+        delta = self.delta(kappa)
         low, high = (np.log(end + delta) for end in self.logs)
         return np.asarray((2 * np.log(log_load + delta) - low - high) / (high - low))
 
     def load_slopes(self, log_load: Array, kappa: Array) -> tuple[Array, Array]:
         """Return the derivatives of :meth:`load_coordinate` with respect to L and to the logarithm of kappa."""
-        delta = self._delta(kappa)
+        delta = self.delta(kappa)
         low, high = (np.log(end + delta) for end in self.logs)
         here, first, last = 1 / (log_load + delta), *(1 / (end + delta) for end in self.logs)
         part = (np.log(log_load + delta) - low) / (high - low)
@@ -91,13 +85,8 @@ class Region:
         slope = np.zeros_like(delta) if self.closing else delta / (1 + kappa)
         return 2 * here / (high - low), by_delta * slope
 
-    def log_load(self, coordinate: Array, kappa: Array) -> Array:
-        """Return L at a coordinate, the inverse of :meth:`load_coordinate`."""
-        delta = self._delta(kappa)
-        low, high = (np.log(end + delta) for end in self.logs)
-        return np.asarray(np.maximum(np.exp(low + 0.5 * (coordinate + 1) * (high - low)) - delta, 0.0))
-
-    def _delta(self, kappa: Array) -> Array:
+    def delta(self, kappa: Array) -> Array:
+        """Return what is added to L in the coordinate."""
         return np.full_like(kappa, self.closing) if self.closing else 2 * kappa / (1 + kappa)
 
 
@@ -228,18 +217,6 @@ def chebyshev_slopes(x: Array, terms: int) -> Array:
         np.multiply(second, n, out=slopes[n])
         second, before = twice * second - before, second
     return slopes
-
-
-def nodes(count: int) -> Array:
-    """Return the zeros of a Chebyshev polynomial, ascending."""
-    return np.asarray(-np.cos(math.pi * (np.arange(count) + 0.5) / count))
-
-
-def to_coefficients(count: int) -> Array:
-    """Return the matrix from values at :func:`nodes` to Chebyshev coefficients."""
-    matrix = chebyshev(nodes(count), count) * (2 / count)
-    matrix[0] /= 2
-    return matrix
 
 
 def local(coordinate: Array, pieces: int) -> tuple[Indices, Array]:

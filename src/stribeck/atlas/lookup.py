@@ -11,7 +11,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.atlas.grid import MAX_L_OF_HEAVY, MAX_ROUGHNESS_OF_HEAVY
 from stribeck.atlas.table import FRICTION_RADIUS
-from stribeck.atlas.tables import BOX_RTOL, table_for
+from stribeck.atlas.tables import table_for, within
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
@@ -44,9 +44,9 @@ def look_up(groups: Groups, names: tuple[str, ...], slopes: int = 0) -> Lookup:
         raise InputError(f"the table {held.name} of the atlas has no {missing[0]}; use solve.")
     speed, load, kappa = (flat(groups, value) for value in (groups.speed, groups.load, groups.relative_roughness))
     for name, values in (("speed", speed), ("load", load), ("relative_roughness", kappa)):
-        _check(name, values, *box[name], zero=name != "load")
+        _check(name, values, box[name], has_zero=name != "load")
     if (kappa == 0).any():
-        _check("speed of a smooth contact", speed[kappa == 0], *grid.films, zero=True)
+        _check("speed of a smooth contact", speed[kappa == 0], grid.films, has_zero=True)
     with np.errstate(divide="ignore"):
         log_speed = np.log(speed)
     log_load = grid.log_load(load)
@@ -134,16 +134,12 @@ def flat(groups: Groups, value: Any) -> Any:
     return np.broadcast_to(np.asarray(value), groups.shape).ravel()
 
 
-def _check(name: str, values: Array, low: float, high: float, zero: bool) -> None:
+def _check(name: str, values: Array, ends: tuple[float, float], has_zero: bool) -> None:
     """Refuse values outside a side of the box."""
-    outside = (values < low * (1 - BOX_RTOL)) | (values > high * (1 + BOX_RTOL))
-    if zero:
-        outside &= values != 0
+    outside = ~within(values, ends, has_zero)
     if outside.any():
-        also = " and 0" if zero else ""
-        raise InputError(
-            f"{name} has the value {values[outside][0]:g}; the atlas covers {low:g} to {high:g}{also}. Use solve outside."
-        )
+        covered = f"{ends[0]:g} to {ends[1]:g}{' and 0' if has_zero else ''}"
+        raise InputError(f"{name} has the value {values[outside][0]:g}; the atlas covers {covered}. Use solve outside.")
 
 
 def contact_share(odds: Any) -> Any:

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from stribeck._types import Flags
+from stribeck._types import Array, Flags
 from stribeck.atlas.grid import (
     BALL_EXIT,
     BALL_EXPONENTIAL,
@@ -19,7 +19,7 @@ from stribeck.atlas.grid import (
     MIN_SPEED,
     Grid,
 )
-from stribeck.atlas.table import FRICTION_RADIUS, FUNCTIONS, Table, load_table
+from stribeck.atlas.table import FUNCTIONS, Table, load_table
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.groups import Geometry, Groups
 from stribeck.contacts.model import BASE_MODEL, Model
@@ -62,11 +62,6 @@ class TableRow:
         return FUNCTIONS[self.geometry]
 
     @property
-    def radius(self) -> float:
-        """Radius up to which the friction of a ball is tabulated [a]."""
-        return FRICTION_RADIUS
-
-    @property
     def table(self) -> Table:
         """The table, read on first use."""
         return load_table(self.file, self.grid)
@@ -89,14 +84,17 @@ class TableRow:
     def covers(self, groups: Groups) -> Flags:
         """Return which states lie in the box, whatever their law and model."""
         found = np.ones(groups.shape, dtype=bool)
-        for name, (low, high) in self.box.items():
-            value = np.asarray(getattr(groups, name))
-            inside = (low * (1 - BOX_RTOL) <= value) & (value <= high * (1 + BOX_RTOL))
-            found &= inside if name == "load" else inside | (value == 0)
-        smooth, speed, (low, high) = np.asarray(groups.roughness) == 0, np.asarray(groups.speed), self.grid.films
-        return np.asarray(
-            found & (~smooth | (speed == 0) | ((low * (1 - BOX_RTOL) <= speed) & (speed <= high * (1 + BOX_RTOL))))
-        )
+        for name, ends in self.box.items():
+            found &= within(np.asarray(getattr(groups, name)), ends, has_zero=name != "load")
+        is_smooth = np.asarray(groups.roughness) == 0
+        return np.asarray(found & (~is_smooth | within(np.asarray(groups.speed), self.grid.films, has_zero=True)))
+
+
+def within(values: Array, ends: tuple[float, float], has_zero: bool) -> Flags:
+    """Return which values lie on a side of a box, but for rounding, or are zero where it has that too."""
+    low, high = ends
+    found: Flags = (low * (1 - BOX_RTOL) <= values) & (values <= high * (1 + BOX_RTOL))
+    return found | (values == 0) if has_zero else found
 
 
 @lru_cache(maxsize=128)

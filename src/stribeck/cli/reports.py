@@ -79,9 +79,9 @@ def number_lines(numbers: Sequence[Number]) -> list[str]:
 
 def place(curve: StribeckCurve, value: float, digits: int = 3) -> str:
     """Return a value of the quantity that varies along a curve, with its unit."""
-    if curve.contact is None:
-        return f"{value:.{digits}g}"
-    return format_si(value, curve.contact.INPUTS.quantities[curve.over].dimension, digits)
+    from stribeck.curves.result import path_of  # loaded with the curve, and not for a state
+
+    return path_of(curve).source.coordinate.text(value, digits)
 
 
 def mark_texts(curve: StribeckCurve, mark: Landmark) -> tuple[str, str]:

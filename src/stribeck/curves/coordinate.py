@@ -85,12 +85,16 @@ class Coordinate:
         """SI unit of what varies; ``"1"`` of groups."""
         return self.base.INPUTS.quantities[self.over].unit if isinstance(self.base, Contact) else "1"
 
+    def text(self, value: float, digits: int = 3) -> str:
+        """Return a value with its unit."""
+        if isinstance(self.base, Groups):
+            return f"{value:.{digits}g}"
+        return format_si(value, self.base.INPUTS.quantities[self.over].dimension, digits)
+
     def where(self, *values: float) -> str:
         """Return values in words, such as ``"speed 1 mm/s to 1 m/s"``."""
-        if isinstance(self.base, Groups):
-            return f"{self.over} group {' to '.join(f'{value:.3g}' for value in values)}"
-        dimension = self.base.INPUTS.quantities[self.over].dimension
-        return f"{self.over} {' to '.join(format_si(value, dimension) for value in values)}"
+        what = f"{self.over} group" if isinstance(self.base, Groups) else self.over
+        return f"{what} {' to '.join(map(self.text, values))}"
 
     @property
     def direction(self) -> Array:
