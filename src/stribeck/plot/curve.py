@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import partial
-from typing import Any, Literal, Protocol, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from stribeck.plot import style
 from stribeck.plot.state import law_text
 from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, Axes, Figure, add_legend, make_logarithmic, new_figure
 from stribeck.quantities.units import DIMENSIONS, InputError, show
+from stribeck.uncertainty.band import Band
 from stribeck.uncertainty.result import Uncertainty
 
 Abscissa = Literal["speed", "hersey"]
@@ -36,13 +37,6 @@ GROUP_SYMBOLS = {
 }
 
 
-class Interval(Protocol):
-    """An interval of the friction along a curve."""
-
-    def along(self, values: Array, friction: Array) -> tuple[Array, Array]:
-        """Return its ends at values of what varies, around the friction there."""
-
-
 @style.picture("the panel is unknown or does not exist for this curve")
 def plot_curve(
     curve: StribeckCurve,
@@ -52,7 +46,7 @@ def plot_curve(
     notes: bool = True,
     abscissa: Abscissa = "speed",
     panel: Panel = "film",
-    band: Interval | None = None,
+    band: Band | None = None,
     verdict: str = "",
 ) -> Figure:
     """Draw a Stribeck curve: friction and its parts, and beside them films and roughness, in SI units for a contact.
@@ -96,7 +90,7 @@ def _draw_curve(
     title: str,
     abscissa: Abscissa = "speed",
     panel: Panel = "film",
-    band: Interval | None = None,
+    band: Band | None = None,
 ) -> tuple[Figure, Axes, Axes]:
     """Return a figure with the two panels of a curve, and them."""
     has_speed = curve.over == "speed"
@@ -179,7 +173,7 @@ def _label(curve: StribeckCurve) -> str:
 
 
 def _draw_friction(
-    axes: Axes, curve: StribeckCurve, x: Array, label: str, band: Interval | None = None, *, parts: bool = True
+    axes: Axes, curve: StribeckCurve, x: Array, label: str, band: Band | None = None, *, parts: bool = True
 ) -> None:
     """Draw the sizes of friction and of its parts, the landmarks, and what errors of the inputs leave open."""
     total, contact, viscous = map(np.abs, (curve.friction.total, curve.friction.asperities, curve.friction.fluid))
