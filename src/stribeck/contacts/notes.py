@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Any
 
 from stribeck._types import Array
 from stribeck.contact_laws.finite_surface import has_endless_tail
@@ -34,23 +34,8 @@ TAIL_ADVICE = ", by 10 to 20 % (stribeck check gives the amount)."  # Ends the n
 ATMOSPHERE = 1.01325e5  # Ambient pressure [Pa], the largest suction of a contact in the open
 
 
-class Values(Protocol):
-    """The observables of a state, of any geometry."""
-
-    @property
-    def contact_load_share(self) -> float:
-        """Fraction of the load that asperities carry."""
-
-    @property
-    def central_gap(self) -> float:
-        """Gap at the centre [u_Hz]."""
-
-    @property
-    def minimum_gap(self) -> float:
-        """Minimum gap [u_Hz]."""
-
-    def viscous_friction(self, beta: float) -> float:
-        """Return the viscous friction coefficient [-], balanced."""
+# The observables of a state of any geometry: contact_load_share, central_gap, minimum_gap and viscous_friction(beta)
+Values = Any
 
 
 def pressure_notes(contact: Contact | None) -> tuple[str, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -47,32 +48,28 @@ def with_parts(problem: Problem, **given: Any) -> Problem:
     return problem
 
 
-def model_at(contact: Contact, name: str, step: float) -> Model:
-    """Return fluid, cavitation and solid in Hertz units with one input of a contact times ``exp(step)``."""
+def _moved(contact: Contact, name: str, step: float) -> Contact:
+    """Return a contact with one of its inputs times ``exp(step)``."""
     changes: dict[str, Any] = {name: getattr(contact, name) * math.exp(step)}
-    return contact.replace(**changes).groups.model
+    return contact.replace(**changes)
 
 
 def models_at_both_sides(contact: Contact, name: str) -> tuple[Model, Model, float] | None:
     """Return models at two values of an input and the distance of their logarithms; None if the input changes no model."""
-    below, above = steps = admissible_steps(contact, name, CENTRAL_STEP, ONE_SIDED_STEP)
-    models = [model_at(contact, name, step) for step in steps]
+    below, above = steps = _admissible_steps(contact, name)
+    models = [_moved(contact, name, step).groups.model for step in steps]
     return None if models[0] == models[1] else (models[0], models[1], above - below)
 
 
-def admissible_steps(contact: Contact, name: str, step: float, alone: float) -> tuple[float, float]:
-    """Return steps of the logarithm of an input to both sides, or by ``alone`` to the only side that the input may take."""
-    try:
-        for each in (-step, step):
-            model_at(contact, name, each)
-    except InputError:
-        try:
-            model_at(contact, name, -alone)
-        except InputError:
-            model_at(contact, name, alone)
-            return 0.0, alone
-        return -alone, 0.0
-    return -step, step
+def _admissible_steps(contact: Contact, name: str) -> tuple[float, float]:
+    """Return steps of the logarithm of an input to both sides, or to the only side on which there is a model."""
+    for steps in ((-CENTRAL_STEP, CENTRAL_STEP), (-ONE_SIDED_STEP, 0.0)):
+        with suppress(InputError):
+            for step in steps:
+                _ = _moved(contact, name, step).groups.model
+            return steps
+    _ = _moved(contact, name, ONE_SIDED_STEP).groups.model
+    return 0.0, ONE_SIDED_STEP
 
 
 def exponents_of(contact: Contact) -> Mapping[str, tuple[float, float, float]]:
@@ -82,8 +79,7 @@ def exponents_of(contact: Contact) -> Mapping[str, tuple[float, float, float]]:
         return known
     found = dict(known)
     for name in width_inputs(contact):
-        value = getattr(contact, name)
-        below, above = (contact.replace(**{name: value * math.exp(step)}).radius for step in (-CENTRAL_STEP, CENTRAL_STEP))
+        below, above = (_moved(contact, name, step).radius for step in (-CENTRAL_STEP, CENTRAL_STEP))
         rate = math.log(above / below) / (2 * CENTRAL_STEP)
         speed, load, roughness = (
             own + rate * by_radius for own, by_radius in zip(known.get(name, (0.0, 0.0, 0.0)), known["radius"], strict=True)
@@ -104,9 +100,8 @@ def factor_exponents(contact: Contact, names: Iterable[str]) -> dict[str, float]
     friction = contact.friction_of_asperities
     found = {name: float(name == "boundary_friction") for name in names}
     for name in found if not friction.is_constant and friction.factor(contact) else ():
-        below, above = steps = admissible_steps(contact, name, CENTRAL_STEP, ONE_SIDED_STEP)
-        moved = (contact.replace(**{name: getattr(contact, name) * math.exp(step)}) for step in steps)
-        less, more = (each.friction_of_asperities.factor(each) for each in moved)
+        below, above = steps = _admissible_steps(contact, name)
+        less, more = (each.friction_of_asperities.factor(each) for each in (_moved(contact, name, step) for step in steps))
         found[name] = math.log(more / less) / (above - below)
     return found
 

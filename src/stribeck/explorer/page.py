@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -70,7 +71,7 @@ def parts_of(answer: Answer) -> dict[str, Any]:
     parts = {
         "answer": table.main_of(answer, rows),
         "notes": [] if curve is None else table.notes_of(note for note in curve.notes if not answer.checks.covers(note)),
-        "numbers": table.number_rows(rows),
+        "numbers": [asdict(row) | {"value": repr(row.value), "error": repr(row.error)} for row in rows],
         "remarks": table.notes_of_state(answer),
         "comparison": table.comparison(answer),
         "waits": UPDATING_TEXT if "margins" in answer.stale else "",

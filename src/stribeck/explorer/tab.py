@@ -248,13 +248,8 @@ class Tab:
     def show_fit(self) -> None:
         """Show what may be fitted to the measured curves of the last file."""
         last = self.measured[-1]
-        self.page.show(
-            fitting={
-                "file": last.file,
-                "inputs": free_inputs(self.inputs),
-                "taken": last.source.taken.replace(CHANGE_READ, "."),
-            }
-        )
+        taken = last.source.taken.replace(CHANGE_READ, ".")
+        self.page.show(fitting={"file": last.file, "inputs": free_inputs(self.inputs), "taken": taken})
 
     async def fit(self, *free: str) -> None:
         """Fit inputs to the measured curves of the last file; undo brings back those before."""
@@ -274,12 +269,7 @@ class Tab:
         else:
             self.change(fitted.inputs)
             self.message = fitted.report
-            found = fitted.found
-            rows = [
-                [self.inputs.table.rows[each.name].label, each.texts[0], each.texts[1], each.texts[3]] for each in found.inputs
-            ]
-            result = {"rows": rows, "said": found.outcome.value, "notes": [*found.quality.messages, *found.notes]}
-            self.page.show(fitted=result, charts={"residuals": residual_chart(found)})
+            self.page.show(fitted=fitted.shown, charts={"residuals": residual_chart(fitted.found)})
 
     async def content(self, kind: str) -> bytes | None:
         """Return a file of what is shown, or None after saying why there is none."""
@@ -340,7 +330,7 @@ class Tab:
                 self.answer = await run(self.threads.live, self.model, self.start, watch=self.while_open)
             await self.draw(message=f"{reason(problem)} What is shown belongs to the inputs before.", failed=True)
         except Exception as again:
-            self.fail(f"{reason(again)} Reload the page.")
+            self.page.show(message=f"{reason(again)} Reload the page.", failed=True)
 
     async def compute(self, now: Inputs, changes: int) -> Answer:
         """Return the answer; where that takes longer than a moment, mark what is shown."""
@@ -380,10 +370,6 @@ class Tab:
         """Return what is wrong with what has no field."""
         known = (*self.inputs.fields, *inputs.GROUP_FIELDS, *choices.CHOICES)
         return "\n".join(problem["sentence"] for name, problem in self.problems.items() if name not in known)
-
-    def fail(self, sentence: str) -> None:
-        """Say what went wrong, and offer to try again or to go back."""
-        self.page.show(message=sentence, failed=True)
 
     def is_shown(self, now: Inputs) -> bool:
         """Whether the page shows the answer to these inputs, and no others were asked for since."""
@@ -444,7 +430,7 @@ class Tab:
             except Superseded:
                 raise
             except Exception as problem:
-                self.fail(reason(problem))
+                self.page.show(message=reason(problem), failed=True)
                 return
 
     async def remember(self, now: Inputs) -> None:

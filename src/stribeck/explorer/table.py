@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from stribeck.contacts.friction import Definition
@@ -83,7 +83,7 @@ def state_rows(solution: BaseSolution, definition: Definition) -> Iterator[Row]:
     for each in (*numbers, Number("contact_friction_share", SHARE, f"{SHARE}: the rest is shear of the fluid", *share)):
         value, error = map(_plain, each.texts)
         tip = "from the inputs" if each.error == 0 else error
-        yield Row(each.name, _capital(each.label), each.value, each.error, value, each.meaning, tip)
+        yield Row(each.name, each.label[0].upper() + each.label[1:], each.value, each.error, value, each.meaning, tip)
 
 
 def _transition_rows(answer: Answer) -> Iterator[Row]:
@@ -122,15 +122,6 @@ def _times(factor: float) -> str:
 
 def _plain(text: str) -> str:
     return text.replace("*", "·")
-
-
-def _capital(text: str) -> str:
-    return text[0].upper() + text[1:]
-
-
-def number_rows(rows: Iterable[Row]) -> list[dict[str, Any]]:
-    """Return rows as the page takes them; values stand there in full, as text."""
-    return [asdict(row) | {"value": repr(row.value), "error": repr(row.error)} for row in rows]
 
 
 def main_of(answer: Answer, rows: Iterable[Row]) -> dict[str, Any]:

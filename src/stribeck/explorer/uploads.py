@@ -66,6 +66,13 @@ class Fitted:
     report: str  # The values, in a sentence
     found: Fit  # The values with their intervals, the residuals and what is to be known of them
 
+    @property
+    def shown(self) -> dict[str, Any]:
+        """What the page shows of it."""
+        rows, found = self.inputs.table.rows, self.found
+        inputs = [[rows[each.name].label, *(each.texts[k] for k in (0, 1, 3))] for each in found.inputs]
+        return {"rows": inputs, "said": found.outcome.value, "notes": [*found.quality.messages, *found.notes]}
+
 
 # What a column of a file may be.
 MEANINGS = (*ABSCISSAS, "entrainment_speed", "friction", "friction_force", "normal_force", "error", "curve")

@@ -30,11 +30,6 @@ def forms_of(table: InputTable, name: str) -> list[Form]:
     return [each for each in FORMS if each in table.forms and table.stands_for.get(each.of, each.of) == name]
 
 
-def words_of(row: Input) -> tuple[str, ...]:
-    """Return what people call a number, the shortest last."""
-    return (row.label, row.name, *row.letters)
-
-
 def examples(table: InputTable, name: str) -> Iterator[str]:
     """Yield how an input may be typed in other words."""
     for form in forms_of(table, name):
@@ -73,7 +68,8 @@ def entries_of(table: InputTable, name: str, text: str) -> Entries | None:
 
 def _named(rows: list[Input], part: str) -> tuple[Input, str] | None:
     """Return the row whose words begin or end a text, and the rest of it; the longest words first."""
-    words = sorted(((word, row) for row in rows for word in words_of(row)), key=lambda each: -len(each[0]))
+    called = ((word, row) for row in rows for word in (row.label, row.name, *row.letters))
+    words = sorted(called, key=lambda each: -len(each[0]))
     for word, row in words:
         sign = re.escape(word).replace("_", "[ _]")
         found = re.fullmatch(rf"(?:{sign}\b\s*[=:]?\s*(.+)|(.+?)\s*\b{sign})", part, re.IGNORECASE if len(word) > 1 else 0)
