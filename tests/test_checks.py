@@ -351,7 +351,7 @@ def test_cartilage_is_outside_for_its_pores():
 
 def test_the_model_and_the_contact_law_are_judged_apart():
     pressed = TRUE.replace(load="3 kN/m", modulus="27 MPa")
-    found = sb.check(pressed)
+    found = checks_of(Subject(pressed), "state")
     assert {each.name for each in found.with_verdict("outside")} == {"contact law at the centre"}
     assert found.headline.startswith("The model applies, with another law") and found.applies_with_another_law
     assert not found.applies and "Persson's law" in found.first_line
