@@ -216,7 +216,9 @@ def main() -> None:
     """Build tables from the command line."""
     parser = argparse.ArgumentParser(description="Make tables of stribeck.atlas from solved states.")
     parser.add_argument("names", nargs="*", default=[TABLES[0].name], help=f"of {', '.join(ROWS)}")
-    parser.add_argument("--target", type=Path, default=Path(stribeck.__file__).parent / "atlas", help="the folder to write into")
+    parser.add_argument(
+        "--target", type=Path, default=Path(stribeck.__file__).parent / "atlas", help="the folder to write into"
+    )
     parser.add_argument("--folder", type=Path, default=Path("build") / "atlas", help="where finished lines are kept")
     parser.add_argument("--workers", type=int, default=2, help="processes")
     arguments = parser.parse_args()
