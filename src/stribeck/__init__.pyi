@@ -8,9 +8,9 @@ from stribeck.cases.fit_settings import FitSettings
 from stribeck.cases.reading import load_case
 from stribeck.checks.table import check
 from stribeck.cli.reports import explain
+from stribeck.contacts.friction import regime_of
 from stribeck.contacts.geometries import LineContact, PointContact
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.regime import regime_of
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.data_sheet.new_case import new_case
 from stribeck.data_sheet.report import write_report

@@ -23,12 +23,10 @@ from stribeck.asymptotics.constants import BALL_FILM_CONSTANT, FILM_CONSTANT
 from stribeck.asymptotics.documentation import VALUES, choices, completed, described
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.contact import model_words
-from stribeck.contacts.groups import Geometry, Groups
-from stribeck.contacts.model import BASE_MODEL
-from stribeck.quantities.arrays import real_array
+from stribeck.contacts.groups import BASE_MODEL, Geometry, Groups
 from stribeck.quantities.docstrings import Described
 from stribeck.quantities.lazy import cached_property
-from stribeck.quantities.units import InputError, checked_word, show
+from stribeck.quantities.units import InputError, checked_word, real_array, show
 
 Value = float | Array
 Arguments = ParamSpec("Arguments")

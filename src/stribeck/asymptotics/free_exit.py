@@ -17,8 +17,7 @@ from scipy.optimize import brentq
 from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Value
-from stribeck.quantities.arrays import real_array
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, real_array, show
 
 __all__ = ["FreeExit", "SmoothFilm", "boundary_film_with_free_exit", "rigid_film_with_free_exit", "slow_film_with_free_exit"]
 

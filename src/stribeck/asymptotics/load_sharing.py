@@ -19,8 +19,7 @@ from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.hydrodynamic import GAP_SLOPE
 from stribeck.asymptotics.perturbation import phi_of
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.arrays import real_array
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, real_array, show
 
 # Range of the states to which the coefficients are fitted.
 FIT_RANGE = (Limit("speed", 1e-9, 1e2), Limit("load", 1e-4, 0.7), Limit("relative_roughness", 1e-4, 1e-1))

@@ -21,8 +21,7 @@ from stribeck.atlas.grid import (
 )
 from stribeck.atlas.table import FUNCTIONS, Table, load_table
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
-from stribeck.contacts.groups import Geometry, Groups
-from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.groups import BASE_MODEL, Geometry, Groups, Model
 from stribeck.fluids.fluid import Cavitation
 from stribeck.quantities.units import InputError, checked_kind
 

@@ -26,9 +26,8 @@ from stribeck.contacts.contact import IN_PLACE_OF
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.geometries import CONTACTS, INPUT_TABLES
 from stribeck.contacts.groups import Geometry, check_geometry
-from stribeck.contacts.inputs import InputTable, ReadInputs, check_motion, read_inputs
+from stribeck.contacts.inputs import InputTable, ReadInputs, check_motion, read_inputs, typical_error_text, typical_errors
 from stribeck.contacts.parts import PART_INPUTS
-from stribeck.contacts.typical_errors import typical_error_text, typical_errors
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import path_of
 from stribeck.quantities.uncertain import has_error, relative_error, split_error

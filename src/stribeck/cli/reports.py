@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 import stribeck as sb
 from stribeck.contacts.contact import Contact, in_words, model_words
-from stribeck.contacts.friction import DEFINITIONS, Definition
-from stribeck.contacts.regime import regime_of
+from stribeck.contacts.friction import DEFINITIONS, Definition, regime_of
 from stribeck.quantities.formats import MIN_STATED_SHARE, figures, format_factor, format_number, format_si
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import table_lines
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
     from stribeck.checks.check import Checks
     from stribeck.curves.regime import Landmark
     from stribeck.curves.result import StribeckCurve
-    from stribeck.quantities.number import Number
+    from stribeck.quantities.formats import Number
     from stribeck.regimes.overview import CurveVerdict, Overview
 
 SCREEN_WIDTH = 80  # Columns of the terminal for which notes of an answer are shortened.

@@ -19,9 +19,8 @@ from numpy.typing import ArrayLike
 from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.numerics.trace import pointwise
-from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, real_array, show
 
 __all__ = ["TableLaw"]
 

@@ -19,9 +19,8 @@ from stribeck.asperity_friction.shear_stress import ShearStress
 from stribeck.contact_laws.law import AsperityLaw, check_alpha
 from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.forms import FORMS
-from stribeck.contacts.groups import BETA, SCALINGS, Geometry, Groups, Scaling
+from stribeck.contacts.groups import BASE_MODEL, BETA, SCALINGS, Geometry, Groups, Scaling
 from stribeck.contacts.inputs import InputTable, check_motion, read_inputs
-from stribeck.contacts.model import BASE_MODEL
 from stribeck.contacts.parts import (
     KINDS,
     LAW_NUMBERS,

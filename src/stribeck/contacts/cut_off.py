@@ -49,7 +49,7 @@ from typing import Any
 import numpy as np
 
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.model import Model
+from stribeck.contacts.groups import Model
 from stribeck.fluids.fluid import Cavitation
 
 CUT_OFF_SLIDING = 0.954293  # K, the offset of ln X by sliding [-]

@@ -21,8 +21,7 @@ import numpy as np
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import FULL_FAR_FILM, far_error, friction_integral, is_far
 from stribeck.contacts.friction import Definition, sliding_part
-from stribeck.contacts.groups import SCALINGS, Geometry, Groups
-from stribeck.contacts.model import Model
+from stribeck.contacts.groups import SCALINGS, Geometry, Groups, Model
 from stribeck.contacts.parts import PURE_SLIDING
 
 Values = Mapping[str, Any]  # Arrays by name

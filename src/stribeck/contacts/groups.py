@@ -1,4 +1,4 @@
-r"""The three dimensionless groups of the model: all that the equations see.
+r"""The three dimensionless groups and the parts of the model that they carry: all that the equations see.
 
 .. math::
 
@@ -21,10 +21,43 @@ from stribeck._types import Array
 from stribeck.contact_laws.exponential import ExponentialLaw, NoContact
 from stribeck.contact_laws.law import AsperityLaw, ContactLaw, is_exponential
 from stribeck.contact_laws.scaled import ScaledLaw, law_of
-from stribeck.contacts.model import BASE_MODEL, Model
-from stribeck.quantities.arrays import real_array
+from stribeck.fluids.fluid import Cavitation, Film
+from stribeck.fluids.newtonian import Newtonian
+from stribeck.profiles.profile import Parabola, Undeformed
 from stribeck.quantities.schema import Input
-from stribeck.quantities.units import InputError, checked_word, show
+from stribeck.quantities.units import InputError, checked_word, real_array, show
+from stribeck.solids.half_plane import HalfPlane, as_solid
+from stribeck.solids.solid import Solid
+
+
+@dataclass(frozen=True)
+class Model:
+    """Film, cavitation, bodies and their shape, by default of the article."""
+
+    film: Film = Newtonian()  # The fluid, in Hertz units
+    cavitation: Cavitation = Cavitation.NONE  # How the film ends behind the contact
+    solid: Solid = HalfPlane()  # The soft body, in Hertz units
+    cavity_pressure: float = 0.0  # Rupture pressure of a film that reforms, above the ambient one, at most zero [p_Hz]
+    profile: Undeformed = Parabola()  # The undeformed gap, in Hertz units
+
+    def __post_init__(self) -> None:
+        """Refuse films and cavitation of other types, and bodies that contradict themselves."""
+        if not type(self.film).__module__.startswith("stribeck."):
+            raise InputError(
+                f"film = {show(self.film)}; films are those of the package. A fluid of your own is a law of shear, viscosity "
+                "or density, given as fluid = ... to a contact or to solve: see Add a fluid in for_developers.md."
+            )
+        checked_word("cavitation", self.cavitation, Cavitation)
+        as_solid("solid", self.solid)
+        if self.cavitation is Cavitation.REFORM and not self.profile.is_parabola:
+            raise InputError(
+                f"cavitation = 'reform' with profile = {self.profile.name}: a film that re-forms is solved on a cylinder "
+                "alone; take cavitation = 'exit', whose film ends behind the contact, or 'none'."
+            )
+
+
+BASE_MODEL = Model()  # A Newtonian fluid that never cavitates, on a half-plane
+
 
 MIN_GROUP = 1e-300  # Smallest group that is not zero: products and squares of the groups stay in double precision
 MAX_GROUP = 1e300  # Largest group: products and squares of the groups stay in double precision
@@ -171,7 +204,7 @@ class Groups:
         if not (isinstance(self.geometry, str) and self.geometry in SCALINGS):
             check_geometry(self.geometry)
         if not isinstance(self.model, Model):
-            raise InputError(f"model = {show(self.model)}; it must be a stribeck.contacts.model.Model.")
+            raise InputError(f"model = {show(self.model)}; it must be a stribeck.contacts.groups.Model.")
         if self.geometry != "line" and not self.model.profile.is_parabola:
             raise InputError(f"profile = {self.model.profile.name}: profiles are those of a line contact; a ball is round.")
         for name, positive in (("speed", False), ("load", True), ("roughness", False)):

@@ -1,4 +1,4 @@
-"""The inputs of the contacts of a geometry: what they keep, what may be given in its place, and the reading of all that."""
+"""The inputs of the contacts of a geometry: what they keep, what may stand in its place, usual errors, and their reading."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 from stribeck.contacts.forms import Form
 from stribeck.contacts.groups import SCALINGS, Geometry
 from stribeck.contacts.parts import PART_INPUTS, Parts
-from stribeck.quantities.formats import format_si
+from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.keywords import known_names
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.schema import Input, numbers_of
@@ -227,3 +227,26 @@ def _slope(form: Form, numbers: list[float], i: int) -> float:
     step = 1e-4
     ahead, behind = ([each * math.exp(sign * step * (k == i)) for k, each in enumerate(numbers)] for sign in (1, -1))
     return (math.log(form.value(*ahead)) - math.log(form.value(*behind))) / (2 * step)
+
+
+def follows_surface(contact: Any, errors: Collection[str]) -> bool:
+    """Return whether beta moves with an uncertain roughness, as under Persson's law."""
+    return "roughness" in errors and "beta" not in errors and contact.law is not None and contact.law.name == "persson"
+
+
+def typical_errors(contact: Any, known: Collection[str]) -> dict[str, float]:
+    """Return the usual standard error over the value of each input that has none."""
+    rows = {name: row for name, row in contact.INPUTS.rows.items() if row.typical_error and name not in known}
+    found = {name: row.typical_error for name, row in rows.items() if getattr(contact, name, None)}
+    if hasattr(contact.law, "fixed_alpha"):
+        found.pop("alpha", None)
+    if follows_surface(contact, {*known, *found} - {"beta"}):
+        found.pop("beta", None)
+    return found
+
+
+def typical_error_text(contact: Any, errors: Mapping[str, float]) -> tuple[str, ...]:
+    """Return which errors are usual ones, in a sentence; nothing where none is."""
+    rows = contact.INPUTS.rows
+    named = ", ".join(f"{rows[name].label} {format_percent(error)}" for name, error in errors.items())
+    return (f"usual errors where none is given: {named}.",) if named else ()

@@ -12,7 +12,7 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any, NamedTuple
 
 from stribeck.asperity_friction.law import AsperityFriction
-from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.groups import BASE_MODEL, Model
 from stribeck.fluids.description import Fluid, as_flow_factors, as_fluid
 from stribeck.fluids.fluid import Cavitation
 from stribeck.fluids.laws import DensityLaw, FilmUnits, FlowFactors, RateLaw, ViscosityLaw

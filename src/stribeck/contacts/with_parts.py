@@ -11,8 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import Model
+from stribeck.contacts.groups import Groups, Model
 from stribeck.contacts.parts import PART_INPUTS, PART_KEYWORDS, Parts, part_names
 from stribeck.fluids.laws import FilmUnits
 from stribeck.quantities.keywords import nearest

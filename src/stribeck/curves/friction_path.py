@@ -13,8 +13,17 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asperity_friction.coulomb import as_asperity_friction
-from stribeck.contacts.friction import Definition, Friction, FrictionArray, check_definition, coefficients, friction_of
-from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, friction_share
+from stribeck.contacts.friction import (
+    BOUNDARY_FLUID_SHARE,
+    HYDRODYNAMIC_CONTACT_SHARE,
+    Definition,
+    Friction,
+    FrictionArray,
+    check_definition,
+    coefficients,
+    friction_of,
+    friction_share,
+)
 from stribeck.curves.regime import Landmark, Transition
 from stribeck.curves.source import Coefficients, CurveValues, Parts, Readings, Source
 from stribeck.numerics.dual import Dual, slope_of

@@ -9,7 +9,7 @@ from enum import StrEnum
 from typing import Annotated, Any, Literal, get_args
 
 from stribeck._types import Array
-from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime
+from stribeck.contacts.friction import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime
 from stribeck.files.results import Record
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError, show

@@ -15,11 +15,9 @@ from stribeck.asperity_friction.coulomb import as_asperity_friction
 from stribeck.asymptotics import hydrodynamic
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact, model_words
-from stribeck.contacts.friction import Definition, FrictionArray
-from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import BASE_MODEL
+from stribeck.contacts.friction import REGIMES, Definition, FrictionArray, Regime, friction_share, regime_numbers
+from stribeck.contacts.groups import BASE_MODEL, Groups
 from stribeck.contacts.notes import HARD_PREFIX, law_notes, minimum_note
-from stribeck.contacts.regime import REGIMES, Regime, friction_share, regime_numbers
 from stribeck.curves.coordinate import Over, check_points, given_values
 from stribeck.curves.friction_path import FrictionPath
 from stribeck.curves.regime import Landmark, Method, Transition, check_transition, ranges_of

@@ -15,7 +15,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.friction_rules import RULES
-from stribeck.contacts.model import BASE_MODEL
+from stribeck.contacts.groups import BASE_MODEL
 from stribeck.contacts.parts import part_names
 from stribeck.contacts.with_parts import exponents_of, factor_exponents, models_at_both_sides
 from stribeck.equations.point.observables import WITHIN

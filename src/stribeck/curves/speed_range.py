@@ -10,10 +10,8 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics import hydrodynamic
-from stribeck.contacts.friction import Definition
-from stribeck.contacts.groups import Groups, contact_law
-from stribeck.contacts.model import BASE_MODEL
-from stribeck.contacts.regime import friction_share
+from stribeck.contacts.friction import Definition, friction_share
+from stribeck.contacts.groups import BASE_MODEL, Groups, contact_law
 from stribeck.equations.line import LOAD
 from stribeck.equations.observables import ROW
 from stribeck.numerics.continuation import follow

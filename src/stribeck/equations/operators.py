@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.groups import BASE_MODEL, Model
 from stribeck.fluids.fluid import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.numerics.panels import HalfTail, Mesh, reference

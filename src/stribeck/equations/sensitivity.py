@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.model import Model
+from stribeck.contacts.groups import Model
 from stribeck.equations.observables import ROW, area_derivatives, changes, measured
 from stribeck.equations.operators import Operators
 from stribeck.equations.state import State

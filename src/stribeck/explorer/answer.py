@@ -20,8 +20,7 @@ from stribeck.checks.law import add_range_along_curve
 from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition
-from stribeck.contacts.regime import Regime, regime_of
+from stribeck.contacts.friction import Definition, Regime, regime_of
 from stribeck.explorer.curves import (
     FIRST_RTOL,
     SOLVED_ROWS,

@@ -11,8 +11,7 @@ from typing import Any
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.explorer.answer import Answer
-from stribeck.quantities.formats import format_factor, format_percent, format_si
-from stribeck.quantities.number import Number
+from stribeck.quantities.formats import Number, format_factor, format_percent, format_si
 from stribeck.regimes.margins import Crossing, RegimeMargins
 from stribeck.solver.base_solution import BaseSolution, regime_of_state
 from stribeck.solver.numbers import report_rows

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck.files.writing import MissingExtraError, PathLike, atomic_write, check_writable, need_extra, path_of, reason_of
-from stribeck.quantities.number import Number
+from stribeck.quantities.formats import Number
 from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:

@@ -28,10 +28,9 @@ from stribeck import atlas
 from stribeck._types import Array, Indices
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_film
-from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction import Definition, friction_share
 from stribeck.contacts.friction_rules import RULES, FrictionRule
 from stribeck.contacts.groups import Groups, Physics
-from stribeck.contacts.regime import friction_share
 from stribeck.contacts.with_parts import exponents_of, models_at_both_sides, refuse_fixed_memory, width_inputs
 from stribeck.equations.sensitivity import Change
 from stribeck.fits.free_inputs import FreeInput

@@ -17,8 +17,8 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.numerics.dual import with_slope
+from stribeck.quantities.registry import check_user_part, refusal
 from stribeck.quantities.schema import numbers_of
-from stribeck.quantities.user_part import check_user_part, refusal
 
 AGREEMENT_RTOL = 1e-5  # Largest relative difference of a law from its own differences, which err a thousand times less.
 

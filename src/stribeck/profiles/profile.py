@@ -22,8 +22,8 @@ from stribeck.numerics.panels import Mesh
 from stribeck.numerics.settings import HALF_DIGITS
 from stribeck.numerics.trace import act, pointwise
 from stribeck.quantities.lazy import cached_property
+from stribeck.quantities.registry import check_user_part, refusal
 from stribeck.quantities.units import InputError, show
-from stribeck.quantities.user_part import check_user_part, refusal
 
 __all__ = ["Departure", "Parabola", "Profile", "Undeformed", "as_profile"]
 

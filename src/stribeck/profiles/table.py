@@ -18,9 +18,8 @@ from numpy.polynomial import chebyshev
 
 from stribeck._types import Array
 from stribeck.profiles.shapes import Shape
-from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.units import InputError, real_array, show, to_si
 
 __all__ = ["Table", "from_pressure"]
 

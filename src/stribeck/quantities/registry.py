@@ -1,4 +1,4 @@
-"""Laws by name: every class of a kind in a package, and those that other packages give under ``stribeck.laws``.
+"""Laws by name, those of others too: every class of a kind in a package, and what is given under ``stribeck.laws``.
 
 A new law is a new file in the package of its kind, or an entry point of another distribution::
 
@@ -11,9 +11,15 @@ from __future__ import annotations
 import functools
 import inspect
 import pkgutil
+from collections.abc import Callable, Hashable
+from functools import lru_cache
 from importlib import import_module
 from importlib.metadata import entry_points
 from typing import Any
+
+import numpy as np
+
+from stribeck.quantities.units import InputError
 
 
 @functools.cache
@@ -44,3 +50,31 @@ def _classes_in(package: str) -> list[Any]:
 @functools.cache
 def _classes_of_others() -> list[Any]:
     return [each.load() for each in entry_points(group="stribeck.laws")]
+
+
+GUIDE = "See Add a fluid in for_developers.md."
+
+
+def refusal(kind: str, part: Any, sentence: str) -> InputError:
+    """Return the error that refuses a part of that kind, with its name."""
+    return InputError(f"the {kind} {getattr(part, 'name', None) or type(part).__name__!r}: {sentence} {GUIDE}")
+
+
+def check_user_part(kind: str, part: Any, check: Callable[[Any], None]) -> None:
+    """Refuse a user's part that ``check`` refuses or fails on; parts of the package have tests of their own."""
+    if type(part).__module__.startswith("stribeck."):
+        return
+    if not isinstance(part, Hashable):
+        raise refusal(kind, part, "it cannot be hashed; make it a frozen dataclass.")
+    _check_once(kind, part, check)
+
+
+@lru_cache(maxsize=64)
+def _check_once(kind: str, part: Any, check: Callable[[Any], None]) -> None:
+    try:
+        with np.errstate(all="ignore"):
+            check(part)
+    except InputError:
+        raise
+    except Exception as error:
+        raise refusal(kind, part, f"its check fails with {type(error).__name__}: {error}.") from error

@@ -14,6 +14,10 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
+
+from stribeck._types import Array
+
 
 class InputError(ValueError):
     """A value given by the user cannot be used; the message says why and what to try."""
@@ -285,3 +289,15 @@ def _registry() -> Any:
 
     # Fractions, because with floats "2.5 um" is 2.4999999999999998e-06.
     return pint.UnitRegistry(cache_folder=None, non_int_type=Fraction)
+
+
+def real_array(name: str, value: Any) -> Array:
+    """Return numbers or arrays of numbers as float64; refuse text, truth values, complex numbers and ragged lists."""
+    try:
+        found = np.asarray(value)
+    except ValueError:  # ragged lists
+        found = np.asarray(None)
+    if found.size and found.dtype.kind not in "iuf":
+        raise InputError(f"{name} = {show(value)} is not made of real numbers; give a number or an array of them.")
+    with np.errstate(over="ignore"):
+        return found.astype(np.float64)

@@ -8,11 +8,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition, Friction
+from stribeck.contacts.friction import Definition, Friction, regime_of
 from stribeck.contacts.geometries import INPUT_TABLES, LINE
-from stribeck.contacts.inputs import InputTable
-from stribeck.contacts.regime import regime_of
-from stribeck.contacts.typical_errors import follows_surface
+from stribeck.contacts.inputs import InputTable, follows_surface
 from stribeck.files.results import Record
 from stribeck.quantities.formats import format_factor, format_number, format_share, format_si
 from stribeck.quantities.units import InputError

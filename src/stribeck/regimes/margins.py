@@ -11,10 +11,18 @@ import numpy as np
 
 from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition, check_definition, coefficients
+from stribeck.contacts.friction import (
+    BOUNDARY_FLUID_SHARE,
+    REGIMES,
+    Definition,
+    Regime,
+    check_definition,
+    coefficients,
+    friction_share,
+    regime_numbers,
+)
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.groups import Geometry
-from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, REGIMES, Regime, friction_share, regime_numbers
 from stribeck.contacts.with_parts import exponents_of, known_speeds
 from stribeck.curves.coordinate import Over
 from stribeck.curves.friction_path import FrictionPath

@@ -17,9 +17,8 @@ from stribeck.asperity_friction.coulomb import as_asperity_friction
 from stribeck.atlas.tables import table_for
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition, coefficients
+from stribeck.contacts.friction import Definition, coefficients, friction_share, regime_numbers
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.regime import friction_share, regime_numbers
 from stribeck.curves.friction_path import FrictionPath
 from stribeck.curves.regime import Landmark, Method, check_method
 from stribeck.curves.result import StribeckCurve, path_of

@@ -15,10 +15,9 @@ from stribeck.asperity_friction.coulomb import Coulomb, as_asperity_friction
 from stribeck.contact_laws.law import AsperityLaw, law_attributes
 from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.contact import Contact, part_attributes
-from stribeck.contacts.friction import Definition, check_definition, coefficients
+from stribeck.contacts.friction import BOUNDARY_FLUID_SHARE, REGIMES, Definition, check_definition, coefficients
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.contacts.inputs import InputTable
-from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, REGIMES
 from stribeck.curves.coordinate import plain_numbers
 from stribeck.curves.regime import Transition
 from stribeck.curves.speed_range import automatic_speed_range

@@ -11,10 +11,9 @@ import numpy as np
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.atlas.tables import table_for
-from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
 from stribeck.numerics.events import rising_zeros
 from stribeck.numerics.threads import one_blas_thread
 

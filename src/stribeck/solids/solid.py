@@ -12,9 +12,9 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.numerics.panels import Mesh
+from stribeck.quantities.registry import GUIDE, check_user_part, refusal
 from stribeck.quantities.schema import numbers_of
 from stribeck.quantities.units import InputError, show
-from stribeck.quantities.user_part import GUIDE, check_user_part, refusal
 
 REQUIRED_MEMBERS = ("name", "parameters", "scaled", "deflection", "far_gap")
 

@@ -13,8 +13,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contact_laws.scaled import ShiftedLaw
-from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.groups import BASE_MODEL, Groups, Model
 from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.series import along
 from stribeck.numerics.settings import NEGLIGIBLE

@@ -12,10 +12,9 @@ from stribeck._types import Array
 from stribeck.asperity_friction.coulomb import as_asperity_friction
 from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.contact import Contact, HertzScales, model_words
-from stribeck.contacts.friction import Definition, Friction, check_definition, coefficients
+from stribeck.contacts.friction import Definition, Friction, Regime, check_definition, coefficients, regime_of
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.notes import law_notes
-from stribeck.contacts.regime import Regime, regime_of
 from stribeck.files.datasets import Column, new_dataset, number_columns
 from stribeck.files.results import Exported
 from stribeck.quantities.keywords import answers_typos

@@ -29,8 +29,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.groups import Groups, contact_law
-from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.groups import BASE_MODEL, Groups, Model, contact_law
 from stribeck.equations.film import is_rough
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.mesh_choice import mesh_for

@@ -17,7 +17,7 @@ from stribeck.contacts.contact import Contact, part_attributes
 from stribeck.contacts.friction import DEFINITIONS, Definition, coefficients
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.number import Number
+from stribeck.quantities.formats import Number
 from stribeck.quantities.outputs import (
     AREA_ROWS,
     COLUMNS,

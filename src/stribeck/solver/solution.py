@@ -17,11 +17,10 @@ from stribeck.contacts.groups import Groups
 from stribeck.equations.gap import gap_at
 from stribeck.equations.observables import Observables, drag_parts, real_area
 from stribeck.numerics.panels import Mesh
-from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES, LINE_BY_CAVITATION, NAMES, OutputTable
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, real_array, show
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.fields import Profile
 

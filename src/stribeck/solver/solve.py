@@ -16,8 +16,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.groups import BASE_MODEL, Groups, Model
 from stribeck.contacts.notes import cavitation_notes, fluid_notes, law_notes, pocket_notes, shape_notes
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.observables import Observables, drag_parts

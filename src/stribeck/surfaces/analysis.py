@@ -16,9 +16,8 @@ from stribeck.contact_laws.persson import GAMMA, GAMMA_INPUT, PerssonLaw, expone
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
 from stribeck.files.datasets import number_columns
 from stribeck.files.results import Exported, Labelled
-from stribeck.quantities.formats import format_si
+from stribeck.quantities.formats import Number, format_si, plain_numbers
 from stribeck.quantities.lazy import cached_property
-from stribeck.quantities.number import Number, plain_numbers
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.departures import Departures, departure_notes, departures, height_numbers

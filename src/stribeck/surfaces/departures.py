@@ -19,8 +19,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.quantities.docstrings import Described
-from stribeck.quantities.formats import format_si
-from stribeck.quantities.number import Number
+from stribeck.quantities.formats import Number, format_si
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum
 from stribeck.surfaces.topography import Topography
 

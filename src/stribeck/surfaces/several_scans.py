@@ -16,9 +16,8 @@ from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.files.datasets import number_columns
 from stribeck.files.results import Exported, Labelled
 from stribeck.files.writing import atomic_write
-from stribeck.quantities.formats import format_si
+from stribeck.quantities.formats import Number, format_si, plain_numbers
 from stribeck.quantities.lazy import cached_property
-from stribeck.quantities.number import Number, plain_numbers
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.units import InputError, show
 from stribeck.surfaces.analysis import WAVES, Surface

@@ -15,7 +15,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.batches.executors import Executor, SweepError, solve_all, solve_here, solve_on_cluster, solve_on_processes
-from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
+from stribeck.contacts.friction import REGIMES, friction_share, regime_numbers
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported, Record
 from stribeck.files.writing import PathLike, path_of

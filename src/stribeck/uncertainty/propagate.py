@@ -12,11 +12,10 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_film
-from stribeck.contacts.friction import Definition, check_definition
+from stribeck.contacts.friction import REGIMES, Definition, check_definition, friction_share, regime_numbers
 from stribeck.contacts.friction_rules import RULES
+from stribeck.contacts.inputs import follows_surface, typical_errors
 from stribeck.contacts.parts import PART_INPUTS
-from stribeck.contacts.regime import REGIMES, friction_share, regime_numbers
-from stribeck.contacts.typical_errors import follows_surface, typical_errors
 from stribeck.curves.coordinate import Over
 from stribeck.curves.regime import Transition
 from stribeck.curves.stribeck_curve import stribeck_curve

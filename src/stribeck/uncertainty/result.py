@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.typical_errors import follows_surface
+from stribeck.contacts.inputs import follows_surface
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.quantities.formats import format_percent, format_share, format_si
 from stribeck.quantities.results import Card, Told

@@ -19,8 +19,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
-from stribeck.contacts.groups import Geometry
-from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.groups import BASE_MODEL, Geometry, Model
 from stribeck.contacts.with_parts import models_at_both_sides
 from stribeck.numerics.dual import Dual
 from stribeck.numerics.scattered import Scattered, lengths_of

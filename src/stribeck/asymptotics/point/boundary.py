@@ -31,8 +31,7 @@ from stribeck.contacts.cut_off import COUETTE, FULL_FAR_FILM, POISEUILLE, far_lo
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
 from stribeck.numerics.fourier_panels import lobatto
-from stribeck.quantities.arrays import real_array
-from stribeck.quantities.units import InputError, checked_word, show
+from stribeck.quantities.units import InputError, checked_word, real_array, show
 
 PhiForm = Literal["quadrature", "closed"]
 

@@ -26,8 +26,7 @@ import numpy as np
 
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.arrays import real_array
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, real_array, show
 
 _regression = partial(formula, uses=("speed",), plane="smooth", geometry="point")
 

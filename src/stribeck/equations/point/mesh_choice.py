@@ -16,7 +16,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw, local_decay_length
-from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.groups import BASE_MODEL, Model
 from stribeck.equations.point.system import LOAD, Operators
 from stribeck.equations.point.thinning_far_field import FarThinned, usual_rate
 from stribeck.fluids.fluid import Cavitation

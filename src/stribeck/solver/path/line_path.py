@@ -17,8 +17,7 @@ from stribeck._types import Array, Numbers
 from stribeck.contact_laws.exponential import ExponentialLaw
 from stribeck.contact_laws.law import is_exponential
 from stribeck.contact_laws.scaled import ContinuedLaw, ScaledLaw, misfit
-from stribeck.contacts.groups import Groups, contact_law
-from stribeck.contacts.model import Model
+from stribeck.contacts.groups import Groups, Model, contact_law
 from stribeck.equations.enriched import FineOperators
 from stribeck.equations.gap import gap_beside, minimum_gaps
 from stribeck.equations.line import Equations, Fields

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.model import Model
+from stribeck.contacts.groups import Model
 from stribeck.equations.cavities.system import CavitatedSystem
 from stribeck.equations.film import closed_gap
 from stribeck.equations.point.observables import MINIMA, identity_error, observables, reach_of

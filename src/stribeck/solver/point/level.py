@@ -11,7 +11,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
-from stribeck.contacts.model import Model
+from stribeck.contacts.groups import Model
 from stribeck.equations.cavities.active_set import iterate_cavitated
 from stribeck.equations.cavities.exit import CavitatedEquations
 from stribeck.equations.cavities.reformation import ReformingEquations

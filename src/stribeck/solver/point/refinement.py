@@ -16,7 +16,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
-from stribeck.contacts.model import Model
+from stribeck.contacts.groups import Model
 from stribeck.equations.cavities.system import CavitatedSystem, just_above
 from stribeck.equations.point.mesh_choice import (
     MeshTooLargeError,

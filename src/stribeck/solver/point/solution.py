@@ -25,10 +25,9 @@ from stribeck.contacts.notes import (
 from stribeck.equations.point.observables import OBSERVABLES
 from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.settings import MAX_BYTES
-from stribeck.quantities.arrays import real_array
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, real_array, show
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.fields import Field, Profile
 from stribeck.solver.point.state import PointObservables, PointState

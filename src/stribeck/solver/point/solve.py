@@ -18,8 +18,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
-from stribeck.contacts.groups import Groups, contact_law
-from stribeck.contacts.model import BASE_MODEL, Model
+from stribeck.contacts.groups import BASE_MODEL, Groups, Model, contact_law
 from stribeck.equations.point.dry import dry_contact, hertz_gap
 from stribeck.equations.point.films import is_isotropic
 from stribeck.equations.point.iteration import Iterated
