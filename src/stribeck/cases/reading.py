@@ -30,7 +30,7 @@ from stribeck.contacts.inputs import InputTable, ReadInputs, check_motion, read_
 from stribeck.contacts.parts import PART_INPUTS
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import path_of
-from stribeck.quantities.uncertain import has_error, relative_error, split_error
+from stribeck.quantities.schema import has_error, relative_error, split_error
 from stribeck.quantities.units import InputError, show
 
 

@@ -14,8 +14,7 @@ from stribeck.contacts.parts import PART_INPUTS, Parts
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.keywords import known_names
 from stribeck.quantities.lazy import cached_property
-from stribeck.quantities.schema import Input, numbers_of
-from stribeck.quantities.uncertain import split_error
+from stribeck.quantities.schema import Input, numbers_of, split_error
 from stribeck.quantities.units import DIMENSIONS, InputError, show
 
 _UNCHANGED = (0.0, 0.0, 0.0)

@@ -26,7 +26,7 @@ from stribeck.files.toml import read_toml
 from stribeck.files.writing import PathLike, atomic_write
 from stribeck.fits.result import Fit
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.uncertain import has_error, split_error
+from stribeck.quantities.schema import has_error, split_error
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["case_of", "check_fitted_case", "write_fitted_case"]

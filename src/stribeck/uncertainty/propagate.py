@@ -25,8 +25,7 @@ from stribeck.quantities.formats import format_si
 from stribeck.quantities.keywords import known_names
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS
-from stribeck.quantities.schema import Input
-from stribeck.quantities.uncertain import relative_error
+from stribeck.quantities.schema import Input, relative_error
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.solver.solve_error import SolveError
 from stribeck.uncertainty.result import Spread, Uncertainty
