@@ -20,7 +20,7 @@ from stribeck.plot import style
 from stribeck.plot.state import law_text
 from stribeck.plot.style import CONTACT, FLUID, GREY, INK, MARK, Axes, Figure, add_legend, make_logarithmic, new_figure
 from stribeck.quantities.units import DIMENSIONS, InputError, show
-from stribeck.uncertainty.band import Band
+from stribeck.uncertainty.propagate import Band
 from stribeck.uncertainty.result import Uncertainty
 
 Abscissa = Literal["speed", "hersey"]
