@@ -1,5 +1,7 @@
 """Every script of benchmarks/ on a load so small that its numbers mean nothing: its tables come out, filled and finite."""
 
+import ast
+import importlib.util
 import os
 import re
 import sys
@@ -32,7 +34,6 @@ LONG = {"batch_rate", "cost", "curve_bound", "explorer_curves", "peers", "point_
 APART = {
     "fluid_speed",
     "point_box",
-    "point_estimate",
     "point_exit_speed",
     "point_parts",
     "walk",
@@ -84,6 +85,22 @@ def check(text):
 def test_no_script_is_forgotten():
     folder = Path(__file__).parents[1] / "benchmarks"
     assert {path.stem for path in folder.glob("*.py")} == set(ARGUMENTS) | APART | NO_SCRIPTS
+
+
+def test_what_scripts_import_of_the_package_is_there():
+    """A script of an hour is not run here: one asked for constants that were gone."""
+    root = Path(__file__).parents[1]
+    paths = [path for folder in ("benchmarks", "evidence") for path in sorted((root / folder).glob("*.py"))]
+    missing = [
+        f"{path.name}: {node.module}.{alias.name}"
+        for path in paths
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("stribeck")
+        for alias in node.names
+        if not hasattr(importlib.import_module(node.module), alias.name)
+        and importlib.util.find_spec(f"{node.module}.{alias.name}") is None
+    ]
+    assert not missing, "\n".join(missing)
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.slow] * (name in LONG)) for name in ARGUMENTS])
