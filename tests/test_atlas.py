@@ -268,7 +268,7 @@ def test_a_table_is_small_and_says_where_it_comes_from():
 
 def test_the_hash_of_the_solver_holds_all_modules_that_make_numbers():
     found = set(atlas_build.solver_sources())
-    assert {"equations.guess", "equations.line", "solver.at_rest", "numerics.newton", "solids.half_plane"} <= found
+    assert {"equations.state", "equations.line", "solver.at_rest", "numerics.newton", "solids.half_plane"} <= found
     assert {"solver.point.refinement", "equations.point.system", "equations.cavities.wake"} <= found
     assert {"contact_laws.exponential", "fluids.newtonian", "contacts.groups", "equations.error_estimate"} <= found
     assert not any(name.startswith(("quantities", "asymptotics", "curves", "files")) for name in found)

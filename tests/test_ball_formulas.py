@@ -18,7 +18,6 @@ from stribeck.asymptotics.point import (
     film,
     friction,
     hertz,
-    logarithm,
     regressions,
     rest,
     rigid,
@@ -52,7 +51,7 @@ def columns(name):
 
 
 def viscous(groups, J, beta):
-    far = logarithm.far_integral(groups.slope(beta), film=film.film_of(groups.speed))
+    far = boundary.far_integral(groups.slope(beta), film=film.film_of(groups.speed))
     return 0.75 * beta * groups.load ** (1 / 3) * (J + groups.speed * far)
 
 
@@ -357,7 +356,7 @@ def test_the_speed_of_a_share_and_the_smooth_integral_are_as_near_as_they_were_f
     off = np.abs(np.log(found / speed[shared]))
     assert off.max() < 0.15 and np.median(off) < 0.085
     speed, _, _, _, J = columns("smooth")
-    far = speed * float(logarithm.far_integral(1.0, 15.0))
+    far = speed * float(boundary.far_integral(1.0, 15.0))
     assert np.abs((friction.smooth_integral(speed) - J) / (J + far)).max() < 8e-4
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -71,13 +72,14 @@ class AtlasSource(Source):
         values = {name: np.asarray(getattr(atlas, name)(groups)) for name in names}
         scales = [values[name] if name in ABSOLUTE else np.ones(groups.shape) for name in names]
 
-        def friction_terms(*coefficients: Any) -> Array:
-            contact, viscous = self._friction(groups, coefficients)
-            total = contact + viscous
-            return np.stack([contact, viscous, total, self.rtol * np.abs(total)], axis=1)
-
         unknown = np.full(groups.shape, np.nan)
-        return Readings(names, values, self.rtol * np.stack(scales, axis=-1), unknown, self.rtol, friction_terms)
+        return Readings(names, values, self.rtol * np.stack(scales, axis=-1), unknown, self.rtol, partial(self._terms, groups))
+
+    def _terms(self, groups: Groups, read: Readings, *coefficients: Any) -> Array:
+        """Return both parts of the friction of groups, their sum and its error, shape (n, 4)."""
+        contact, viscous = self._friction(groups, coefficients)
+        total = contact + viscous
+        return np.stack([contact, viscous, total, self.rtol * np.abs(total)], axis=1)
 
     def _friction(self, groups: Groups, coefficients: Any, slopes: int = 0) -> tuple[Any, Any]:
         """Return both parts of the friction, with derivatives by the groups if wanted."""

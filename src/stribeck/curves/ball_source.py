@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,6 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import log_cut_offs
-from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.source import Coefficients, Parts, Progress, Readings, Source
@@ -36,19 +36,21 @@ def _readings(solutions: Sequence[PointSolution]) -> Readings:
     states = [one.state for one in solutions]
     stated = [each.relative_errors for each in states]
 
-    def friction_terms(boundary_friction: Any, beta: float, definition: Definition) -> Array:
-        found = [one.friction(boundary_friction, beta, definition) for one in solutions]
-        return np.array([[f.asperities, f.fluid, f.total, f.error] for f in found]).reshape(-1, 4)
-
     return Readings(
         names=OBSERVABLES,
         values={name: np.array([each.values[name] for each in states]) for name in OBSERVABLES},
         relative_errors=np.array([[each[name] for name in OBSERVABLES] for each in stated]).reshape(-1, len(OBSERVABLES)),
         position_error=np.array([one.minimum_radius_error for one in solutions]),
         error_estimate=max((one.error_estimate for one in solutions), default=math.nan),
-        friction_terms=friction_terms,
-        made=lambda: solutions,
+        terms=_terms,
+        made=partial(tuple, solutions),
     )
+
+
+def _terms(read: Readings, *coefficients: Any) -> Array:
+    """Return both parts of the friction of solutions, their sum and its error, shape (n, 4)."""
+    found = [one.friction(*coefficients) for one in read.solutions]
+    return np.array([[f.asperities, f.fluid, f.total, f.error] for f in found]).reshape(-1, 4)
 
 
 @dataclass(frozen=True, eq=False)

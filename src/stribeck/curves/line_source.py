@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -134,31 +135,31 @@ class LineSource(Source):
         stated = np.maximum(errors[:, :POSITION], self.least_error)
         relative = np.asarray(stated / drag_parts(found[:, :POSITION]))
 
-        def points() -> list[CurvePoint]:
-            rows = zip(s.tolist(), found, errors, strict=True)
-            return [CurvePoint(self.coordinate, self.path, at, row, error, rtol) for at, row, error in rows]
-
-        def friction_terms(boundary_friction: Any, beta: float, definition: Definition) -> Array:
-            friction, viscous = as_asperity_friction(boundary_friction), ROW[f"viscous_{definition}"]
-            rubbing, column = self.sliding * self.factors(friction, s), ROW.get(friction.observable)
-            if column is not None:
-                amount, of_amount = found[:, column], relative[:, column]
-            else:  # off solved states
-                amount, of_amount = np.array([friction.amount(each) for each in readings.solutions]).reshape(-1, 2).T
-            contact, fluid = rubbing * amount, beta * found[:, viscous]
-            error = abs(rubbing) * of_amount + np.abs(fluid) * relative[:, viscous]
-            return np.stack([contact, fluid, contact + fluid, error], axis=1)
-
-        readings = Readings(
+        return Readings(
             names=ALL_NAMES,
             values=dict(zip(COLUMNS, found.T, strict=True)),
             relative_errors=relative,
             position_error=errors[:, POSITION],
             error_estimate=float(np.nanmax(stated, initial=0.0)) if len(s) else np.nan,
-            friction_terms=friction_terms,
-            made=points,
+            terms=partial(self._terms, s),
+            made=partial(self._points, s, found, errors, rtol),
         )
-        return readings
+
+    def _points(self, s: Array, found: Array, errors: Array, rtol: float) -> list[CurvePoint]:
+        """Return the solutions at places."""
+        rows = zip(s.tolist(), found, errors, strict=True)
+        return [CurvePoint(self.coordinate, self.path, at, row, error, rtol) for at, row, error in rows]
+
+    def _terms(self, s: Array, read: Readings, boundary_friction: Any, beta: float, definition: Definition) -> Array:
+        """Return both parts of the friction at places, their sum and its error, shape (n, 4)."""
+        friction, viscous = as_asperity_friction(boundary_friction), f"viscous_{definition}"
+        rubbing, of = self.sliding * self.factors(friction, s), read.relative_errors[:, ROW[viscous]]
+        if friction.observable in ROW:
+            amount, of_amount = read.values[friction.observable], read.relative_errors[:, ROW[friction.observable]]
+        else:  # off solved states
+            amount, of_amount = np.array([friction.amount(each) for each in read.solutions]).reshape(-1, 2).T
+        contact, fluid = rubbing * amount, beta * read.values[viscous]
+        return np.stack([contact, fluid, contact + fluid, abs(rubbing) * of_amount + np.abs(fluid) * of], axis=1)
 
     def parts(self, s: Any, coefficients: Coefficients) -> Parts:
         """Return the load share of the fluid and both parts of the friction, at places that may bring their derivatives."""

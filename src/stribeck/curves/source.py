@@ -37,9 +37,12 @@ class Readings:
     relative_errors: Array  # Estimated, absolute for the load shares, shape (n, names)
     position_error: Array  # Estimated absolute error of the position of the minimum gap
     error_estimate: float  # The largest error, as a solution states it
-    friction_terms: Callable[[Any, float, Definition], Array]
-    """Gives the friction of asperities and fluid, their sum and its error, shape (n, 4), for other coefficients."""
+    terms: Callable[..., Array]  # Gives what :meth:`friction_terms` does, of these readings
     made: Callable[[], Iterable[Any]] = tuple  # Gives a solution for each place; none where no states are solved
+
+    def friction_terms(self, boundary_friction: Any, beta: float, definition: Definition) -> Array:
+        """Return the friction of asperities and fluid, their sum and its error, shape (n, 4), for other coefficients."""
+        return self.terms(self, boundary_friction, beta, definition)
 
     @cached_property
     def solutions(self) -> tuple[Any, ...]:

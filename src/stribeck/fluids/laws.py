@@ -66,9 +66,9 @@ class Law(Protocol):
         """What distinguishes this law from others of its name, for outputs: its numbers."""
         return {name: getattr(self, name) for name in numbers_of(type(self))}
 
+    @abstractmethod
     def scaled(self, units: FilmUnits) -> Self:
-        """Return the law in Hertz units: itself, unless it has numbers with a unit."""
-        return self
+        """Return the law in Hertz units; a law without numbers that have a unit returns itself."""
 
     def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
         """Return sentences on where a state leaves the range of the law, in Hertz units; mostly none."""
@@ -122,6 +122,10 @@ class FlowFactors(Law, Protocol):
 @dataclass(frozen=True)
 class Smooth(FlowFactors):
     """The flow between smooth surfaces, which a gap many times the roughness is too."""
+
+    def scaled(self, units: FilmUnits) -> Self:
+        """Return itself: it has no numbers."""
+        return self
 
     def pressure(self, gap: Any) -> Any:
         """Return one."""

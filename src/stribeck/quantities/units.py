@@ -12,11 +12,10 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from stribeck._types import Array
+if TYPE_CHECKING:
+    from stribeck._types import Array
 
 
 class InputError(ValueError):
@@ -293,6 +292,8 @@ def _registry() -> Any:
 
 def real_array(name: str, value: Any) -> Array:
     """Return numbers or arrays of numbers as float64; refuse text, truth values, complex numbers and ragged lists."""
+    import numpy as np  # not for a command that only shows its help
+
     try:
         found = np.asarray(value)
     except ValueError:  # ragged lists

@@ -47,6 +47,10 @@ MAX_SUCTION_RATIO = 0.1  # Suction over the pressure of the density law that dra
 class Constant(ViscosityLaw):
     """The viscosity that does not depend on the pressure."""
 
+    def scaled(self, units: FilmUnits) -> Self:
+        """Return itself: it has no numbers."""
+        return self
+
     def log(self, pressure: Any) -> Any:
         """Return zero."""
         return np.zeros_like(pressure)
@@ -144,6 +148,10 @@ class Roelands(ViscosityLaw):
 @dataclass(frozen=True)
 class Incompressible(DensityLaw):
     """The density that does not depend on the pressure."""
+
+    def scaled(self, units: FilmUnits) -> Self:
+        """Return itself: it has no numbers."""
+        return self
 
     def ratio(self, pressure: Any) -> Any:
         """Return one."""
