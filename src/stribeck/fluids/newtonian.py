@@ -196,6 +196,21 @@ class Blend:
     newtonian: float  # Part of the Newtonian fluid
     plain: Film = Newtonian()
 
+    @property
+    def name(self) -> str:
+        """The name of the film."""
+        return self.film.name
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """The parameters of the film."""
+        return self.film.parameters
+
+    @property
+    def uses_pressure(self) -> bool:
+        """Whether the film's gradient depends on the pressure."""
+        return self.film.uses_pressure
+
     def at(self, speed: Any) -> Self:
         """Return the blend at a speed."""
         return replace(self, film=self.film.at(speed))

@@ -30,7 +30,6 @@ from numpy.polynomial import legendre
 from stribeck._types import Array
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.numerics.settings import HALF_DIGITS
-from stribeck.solids.layer import clustered_rule
 
 FAR_DISTANCE = 1.35  # Distance from the centre of a panel [half-widths] from which FAR_POINTS serve, with an error of 1e-12.
 FAR_POINTS = 24  # Gauss points of a panel for targets from FAR_DISTANCE on: rho**-35 is left beside a polynomial of degree 12.
@@ -46,6 +45,14 @@ CLUSTER_POWER = 5  # Power with which the points of a near panel cluster towards
 @lru_cache(maxsize=8)
 def _gauss(count: int) -> tuple[Array, Array]:
     return legendre.leggauss(count)
+
+
+@lru_cache(maxsize=8)
+def _clustered_rule(count: int) -> tuple[Array, Array]:
+    """Return nodes and weights on [0, 1], clustered towards 0."""
+    t, w = _gauss(count)
+    v = 0.5 * (t + 1.0)
+    return v**CLUSTER_POWER, 0.5 * w * CLUSTER_POWER * v ** (CLUSTER_POWER - 1)
 
 
 def deflection_by_mode(mesh: PolarMesh, modes: int | None = None, targets: Array | None = None) -> Array:
@@ -86,7 +93,7 @@ def tilt_from_beyond(mesh: PolarMesh, power: float) -> Array:
 
 def deflections_from_beyond(mesh: PolarMesh, power: float, modes: int) -> Array:
     """Return the same of the first modes, shape (modes, rings)."""
-    v, w = clustered_rule(NEAR_POINTS, CLUSTER_POWER)
+    v, w = _clustered_rule(NEAR_POINTS)
     r, rim = mesh.radii[:, None], mesh.rim
     # s = rim/(1 - v), so that it reaches from the rim to infinity; far out the kernel falls as r/s**2.
     beyond = v / (1.0 - v) * rim
@@ -119,7 +126,7 @@ def _far_points(
 
 def _near_points(mesh: PolarMesh, panel: int, radii: Array, place: Array) -> tuple[Array, Array, Array]:
     """Return the same for near targets, on both parts of the panel; a part may be empty."""
-    v, w = clustered_rule(NEAR_POINTS, CLUSTER_POWER)
+    v, w = _clustered_rule(NEAR_POINTS)
     half = float(mesh.spans[1][panel])
     inside = np.clip(place, -1.0, 1.0)[:, None]
     outside = place[:, None] - inside  # how far the target lies beyond the end of the panel

@@ -173,7 +173,7 @@ class Layer(Solid):
                 found[far] = rule.interpolation((place[far] - middle) / span) @ there
                 some &= ~far
             first, length = first[some, None], (last - first)[some, None]
-            at, weights = clustered_rule(steps, grading)
+            at, weights = _clustered_rule(steps, grading)
             away = first + length * at
             kernel = length * weights * (smooth_kernel(away, self.poisson_ratio) - np.log(away) / math.pi)
             polynomials = panel.polynomials(((place[some, None] + away) / half).ravel()).reshape(mesh.order, *away.shape)
@@ -209,8 +209,8 @@ def _finer_rule(order: int, count: int) -> tuple[Array, Array]:
     return nodes, reference(order).interpolation(nodes).T * weights
 
 
-@lru_cache(maxsize=8)
-def clustered_rule(count: int, grading: int) -> tuple[Array, Array]:
+@lru_cache(maxsize=2)
+def _clustered_rule(count: int, grading: int) -> tuple[Array, Array]:
     """Return nodes and weights on [0, 1] for what holds a logarithm at zero or just beyond, if they crowd there."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
     root = 0.5 * (1 + nodes)

@@ -94,6 +94,7 @@ def expand(
     share = found["contact_load_share"]
     if share.value > 0:
         logs[:, ROW["contact_load_share"]] = np.log(share).coefficients[:, 0]
+    tape.made.clear()  # a jet holds its tape: both would wait for the collector
     return Expanded(w, values, logs)
 
 
