@@ -343,6 +343,14 @@ def test_neither_a_link_nor_an_upload_reads_a_file_of_this_machine(tmp_path):
         assert "the secret" not in str(problem.value), (name, key)
 
 
+def test_the_report_of_a_scan_says_which_rows_were_left_out():
+    spectrum = sb.surfaces.SelfAffine(1e-6, 2e4, 3e6, 0.8, 1e5)
+    heights = sb.surfaces.synthetic_topography(spectrum, (64, 64), 1e-6, 5).heights
+    rows = [f"{i};{j};{z * 1e9:.4f}" for (i, j), z in np.ndenumerate(heights)]
+    text = "\n".join(["x (um);y (um);z (nm)", *rows, "end of data"])
+    assert f"1 row below the numbers left out: {len(rows) + 2}." in read_scan("scan.txt", text.encode()).report
+
+
 def test_odd_names_of_uploads_become_plain_ones(subtests):
     for name, shown in [
         ("..", "file"),
