@@ -266,6 +266,14 @@ def test_a_table_is_small_and_says_where_it_comes_from():
         assert (about["geometry"], about["law"], about["box"]) == (row.geometry, row.law, row.box)
 
 
+def test_a_table_is_made_where_it_is_read(monkeypatch):
+    made = []
+    monkeypatch.setattr(atlas_build, "build", lambda row, target, *rest: made.append(target))
+    monkeypatch.setattr("sys.argv", ["atlas_build", *(row.name for row in TABLES)])
+    atlas_build.main()
+    assert len(made) == len(TABLES) and all(target.exists() for target in made)
+
+
 def test_the_hash_of_the_solver_holds_all_modules_that_make_numbers():
     found = set(atlas_build.solver_sources())
     assert {"equations.state", "equations.line", "solver.at_rest", "numerics.newton", "solids.half_plane"} <= found
