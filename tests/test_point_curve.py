@@ -33,6 +33,15 @@ def test_each_point_of_a_curve_is_the_state_solved_from_cold(curve):
     assert curve.friction[4] == pytest.approx(cold.friction(MU0, BETA).total, rel=2 * RTOL)
 
 
+def test_an_interval_much_longer_than_the_next_does_not_magnify_errors_of_its_states():
+    like = sb.Groups(1.0, 0.0239862, 0.00588111, geometry="point")
+    curve = sb.stribeck_curve(like, speed=(0.4, 3.018), points=9, rtol=RTOL, cavitation="exit")
+    assert curve.outcome is Outcome.CONVERGED and curve.error_estimate <= 2 * RTOL
+    cold = sb.solve(curve.solutions[5].groups, rtol=RTOL)
+    for name in SMOOTH[:4]:
+        assert curve.observable(name)[5] == pytest.approx(getattr(cold, name), rel=4 * RTOL)
+
+
 def test_the_minimum_of_a_ball_lies_where_no_state_beside_it_has_less_friction(curve):
     found = curve.minimum
     assert found.value == pytest.approx(0.0038564, rel=2e-3)

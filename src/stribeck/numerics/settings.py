@@ -61,7 +61,7 @@ EXTRA_NODES = 4
 DEFECT_SAFETY = 3.0  # Stated error over that estimated on finer nodes; with two, four of 864 golden states of the line miss it
 SPLIT_MARGIN = 1.05  # Number of panels over that which just resolves the fields; with less, states need another refinement
 SIGN_PATTERNS = 5  # Patterns of signs of rounding errors: their mean square is right within a factor of two, with fewer not
-# Sum of absolute weights of a prediction above which it uses fewer states: it would make negligible errors of theirs whole.
+# Sum of absolute weights above which a polynomial takes fewer states: it would make negligible errors of theirs whole.
 MAX_AMPLIFICATION = 1.0 / NEGLIGIBLE
 
 # Tolerances of the promise.

@@ -20,6 +20,7 @@ from stribeck.numerics.continuation import ReadablePath
 from stribeck.numerics.dual import Dual, value_of
 from stribeck.numerics.hermite import inner_places, slope_noise, weights_through
 from stribeck.numerics.settings import (
+    MAX_AMPLIFICATION,
     MAX_LOG_STEP,
     SAFETY,
     SHARE,
@@ -116,10 +117,19 @@ class HermitePath(ReadablePath):
         return Dual(found, np.reshape(s.slope, (-1, 1)) * growth * found)
 
     def _window(self, k: int, width: int) -> tuple[int, int]:
-        """Return the first and the last of the states around interval k, so many if there are of its kind."""
+        """Return the first and the last of the states around interval k, of its kind, at most so many.
+
+        Fewer are taken where errors of states would grow between them, as they do on an interval much longer than the next.
+        """
         low, high = self._runs[k]
-        first = min(max(k + 1 - width // 2, low), max(high + 1 - width, low))
-        return first, min(first + width - 1, high)
+        places = self.coordinates[k] + inner_places() * (self.coordinates[k + 1] - self.coordinates[k])
+        while True:
+            first = min(max(k + 1 - width // 2, low), max(high + 1 - width, low))
+            last = min(first + width - 1, high)
+            at, _ = weights_through(self.coordinates[first : last + 1], places)
+            if last - first < 2 or np.abs(at).sum(axis=1).max() <= MAX_AMPLIFICATION:
+                return first, last
+            width = max(2, last - first - 1)
 
     @cached_property
     def _runs(self) -> list[tuple[int, int]]:
