@@ -114,3 +114,21 @@ def test_a_law_shows_its_numbers_with_their_errors_and_is_the_fluid_of_a_contact
     assert ["exponent", "of", "shear", "thinning", exponent, error] in rows
     assert f", power-law {100 * found.misfits['power-law']:.2g} %, " in str(found)
     assert found.inputs == {"viscosity": found.viscosity, "fluid": found.fluid} and found.fluid.rheology == found.law
+
+
+def test_text_below_the_numbers_of_a_file_is_named_where_a_fit_reads_it_and_refused_where_a_law_does(tmp_path):
+    def written(*rows):
+        (tmp_path / "a.csv").write_text("\n".join((*rows, "End of data")))
+        return tmp_path / "a.csv"
+
+    flow = zip(RATE, measured("cross"), strict=True)
+    found = sb.fluids.read_flow_curve(written("rate [1/s];viscosity [Pa s]", *(f"{x};{y}" for x, y in flow), "5;"))
+    assert found.notes[:2] == ("1 row below the numbers left out: 28.", "Rows with an empty cell left out: 27.")
+    moduli = (f"{x:g};{1 + x / (1 + x)};{x / (1 + x**2)}" for x in np.geomspace(0.01, 100, 20))
+    found = sb.solids.from_master_curve(written("frequency [rad/s];E' [MPa];E'' [MPa]", *moduli))
+    assert found.notes[0] == "1 row below the numbers left out: 22."
+    law = written("separation,pressure", *(f"{x},{np.exp(-x)}" for x in range(5)))
+    with pytest.raises(sb.InputError, match="no numbers of the table above in row 7; take text out"):
+        sb.contact_laws.TableLaw.read(law)
+    law.write_text(law.read_text().replace("End", "# End"))
+    assert sb.contact_laws.TableLaw.read(law).parameters["rows"] == 5

@@ -35,7 +35,9 @@ def loop_of(path, contact, over="position [mm]", count=120, seed=1, motion=MOTIO
 def test_boundary_friction_comes_out_of_a_loop_over_position(case, tmp_path):
     contact = sb.load_case(case).contact
     path = loop_of(tmp_path / "loop.csv", contact.replace(boundary_friction=0.5))
+    path.write_text(path.read_text() + "End of data\n")
     found = sb.bench.fit_loop(path, case, free=["boundary_friction"])
+    assert found.notes[0] == "1 row below the numbers left out: 122."
     low, high = found["boundary_friction"].interval_95
     assert low < 0.5 < high and high / low < 1.6
     assert 0.7 * NOISE < found.noise < 4 * NOISE  # with what 24 steps leave

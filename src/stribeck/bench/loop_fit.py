@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -51,6 +51,7 @@ class Loop:
     over: str  # "position" or "time", what friction was measured over
     values: Array  # [m or s]
     friction: Array  # With the sign of the force against the motion [-]
+    notes: tuple[str, ...] = ()  # On rows of the file that were left out
 
     def __len__(self) -> int:
         """Return the number of rows."""
@@ -62,12 +63,12 @@ def read_loop(path: PathLike) -> Loop:
     path = path_of(path)
     if not Path(path).is_file():
         raise InputError(f"{path}: there is no such file.")
-    found, _ = read_columns(path, ADVICE, *({name: over, "friction": FRICTION} for name, over in OVER.items()), gaps=True)
+    found, notes = read_columns(path, ADVICE, *({name: over, "friction": FRICTION} for name, over in OVER.items()), gaps=True)
     friction = found.pop("friction")
     [(over, values)] = found.items()
     if not (np.any(friction > 0) and np.any(friction < 0)):
         raise InputError(f"{path}: friction has one sign; a loop has friction of the way back below zero.")
-    return Loop(str(path), over, values, friction)
+    return Loop(str(path), over, values, friction, notes)
 
 
 SLOW = 0.1  # Speed over the largest below which a row is left out: at a reversal the rig gives way before the surfaces slide
@@ -242,7 +243,7 @@ class _LoopModel:
         self._known: dict[bytes, tuple[Array, Array, Array, Array]] = {}
         self.phase, sliding = self._phases(loop)
         self.left_out = int((~sliding).sum())
-        self.data = Loop(loop.path, loop.over, loop.values[sliding], loop.friction[sliding])
+        self.data = replace(loop, values=loop.values[sliding], friction=loop.friction[sliding])
         self.phase = self.phase[sliding]
 
     def _phases(self, loop: Loop) -> tuple[Array, Flags]:
@@ -339,7 +340,7 @@ def _result(model: _LoopModel, at: Minimum) -> LoopFit:
         unit, dimension = unit_of(free.name, False), model.contact.INPUTS.rows[free.name].dimension
         stated, value = math.nan if bound else error, free.value(theta)
         inputs.append(FittedInput(free.name, None, value, unit, free.start, False, stated, narrow, wide, bound, dimension))
-    notes = []
+    notes = list(model.data.notes)
     if model.left_out:
         notes.append(f"{model.left_out} rows slower than a tenth of the largest speed left out.")
     if np.any(np.abs(moved) > np.sqrt(scatter)):

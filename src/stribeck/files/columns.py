@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stribeck._types import Array, Indices
-from stribeck.files.cells import is_named, number_of, split_header
+from stribeck._types import Array
+from stribeck.files.cells import is_named, number_of, rows_listed, split_header
 from stribeck.files.table_reading import read_table
 from stribeck.files.text_table import TextTable
 from stribeck.files.writing import PathLike, path_of
@@ -90,14 +90,17 @@ class Column:
 
 def read_columns(
     path: PathLike, advice: str, *choices: Mapping[str, Column], gaps: bool = False
-) -> tuple[dict[str, Array], Indices]:
-    """Return columns of a file in SI units, with the row of each value: those of the first choice that is all there.
+) -> tuple[dict[str, Array], tuple[str, ...]]:
+    """Return columns of a file in SI units, those of the first choice that is all there, and notes on rows left out.
 
-    Rows with ``gaps`` are left out, or else refused.
+    Rows with ``gaps`` or text are left out, or else refused.
     """
     file = path_of(path)
     known = [column for choice in choices for column in choice.values()]
     table = read_table(file, expected=advice, knows=lambda name: any(each._matches(name) for each in known))
+    if table.unread and not gaps:
+        rows = rows_listed(sorted(table.unread))
+        raise InputError(f"{file}: no numbers of the table above in row {rows}; take text out, or begin its rows with #.")
     wanted = next((choice for choice in choices if all(each.names_in(table) for each in choice.values())), choices[-1])
     found = {}
     for name, column in wanted.items():
@@ -110,7 +113,9 @@ def read_columns(
             raise InputError(f"{file}: the header is {show(', '.join(table.header))}, {said}; {advice}.")
         found[name] = table.numbers_of(headers[0], functools.partial(column.factor, name), gaps=gaps)
     whole = ~np.isnan(list(found.values())).any(axis=0)
-    return {name: values[whole] for name, values in found.items()}, np.array(table.numbers)[whole]
+    empty = rows_listed(np.array(table.numbers)[~whole])
+    notes = (*table.notes, f"Rows with an empty cell left out: {empty}.") if empty else table.notes
+    return {name: values[whole] for name, values in found.items()}, notes
 
 
 def stated_in(table: TextTable) -> Iterator[tuple[int, str, str, str]]:

@@ -105,9 +105,8 @@ def _read(
         notes += (f"{skipped} row{'s' * (skipped > 1)} of other text above the header skipped.",)
     for other in tables:
         at = lines[other.at].number
-        notes += (
-            f"A table of {other.rows} rows under another header, in row {at}, left out; header_row = {at} in [fit] reads it.",
-        )
+        reads = f"; header_row = {at} in [fit] reads it" if expected == HEADER_ADVICE else ""
+        notes += (f"A table of {other.rows} rows under another header, in row {at}, left out{reads}.",)
     inside.update(i for each in same for i in range(each.first, each.below))
     taken = set(numbers)
     left_out = [
@@ -134,6 +133,7 @@ def _read(
         units_row=units,
         written=written,
         above=above,
+        unread=(*left_out, *(lines[other.at].number for other in tables)),
         notes=notes,
     )
     return table, heading.labels

@@ -15,7 +15,7 @@ import itertools
 import math
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -200,11 +200,12 @@ def read_flow_curve(path: str | os.PathLike[str], *, law: str | None = None) -> 
         "shear rate": Column(r"(shear |strain )?rate( of shear)?|shearrate|gamma dot|gammadot|scherrate|d", "rate"),
         "viscosity": Column(r"(shear |dynamic |apparent )?viscosity|eta|viskosität", "viscosity"),
     }
-    found, _ = read_columns(path, advice, columns, gaps=True)
+    columns_of, notes = read_columns(path, advice, columns, gaps=True)
     try:
-        return flow_curve(found["shear rate"], found["viscosity"], law=law)
+        found = flow_curve(columns_of["shear rate"], columns_of["viscosity"], law=law)
     except InputError as problem:
         raise InputError(f"{path}: {problem}") from None
+    return replace(found, notes=(*notes, *found.notes))
 
 
 def _checked(rate: Any, viscosity: Any) -> tuple[Array, Array]:

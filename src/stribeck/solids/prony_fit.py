@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -231,11 +231,12 @@ def from_master_curve(path: str | os.PathLike[str], *, poisson_ratio: float = 0.
         "storage modulus": Column(r"(tensile |young s )?storage( modulus)?|e'|e′|e storage|speichermodul", "pressure"),
         "loss modulus": Column(r"(tensile |young s )?loss( modulus)?|e''|e″|e′′|e\"|e loss|verlustmodul", "pressure"),
     }
-    found, _ = read_columns(path, advice, columns, gaps=True)
+    values, notes = read_columns(path, advice, columns, gaps=True)
     try:
-        return fit_prony(*found.values(), poisson_ratio=poisson_ratio)
+        found = fit_prony(*values.values(), poisson_ratio=poisson_ratio)
     except InputError as problem:
         raise InputError(f"{path}: {problem}") from None
+    return replace(found, notes=(*notes, *found.notes))
 
 
 def _terms(omega: Array, times: Array) -> Array:
