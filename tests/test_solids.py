@@ -158,6 +158,14 @@ def test_the_memory_is_the_exponential_mean_of_what_has_passed(subtests):
 
 
 @pytest.mark.quick
+def test_a_layer_yields_to_the_pressure_far_beyond_the_contact():
+    """A film of a fast contact reaches hundreds of half-widths; with no deflection beyond the panels both differed by 5e-7."""
+    fast, solid = sb.Groups(301717.1384863469, 0.42855914340436113, 0.0), Layer(0.8795634762570477, 0.15557086584745672)
+    found, reference = (sb.solve(fast, solid=solid, rtol=rtol) for rtol in (1e-6, 1e-9))
+    for name in ("central_gap", "minimum_gap", "flux_gap", "offset", "viscous_balanced"):
+        assert abs(getattr(found, name) / getattr(reference, name) - 1) <= found.errors[name], name
+
+
 def test_a_layer_much_thinner_than_panels_are_wide_gives_way_as_springs():
     """Kernels of panels that hold all of their own width; what is left goes with the bend of the pressure, as d**3."""
     mesh = Mesh(np.array([-6.1, -6.0, 6.0, 6.1]), 12)

@@ -103,10 +103,7 @@ class Layer(Solid):
         return Layer(self.layer_thickness / length, self.poisson_ratio)
 
     def deflection(self, mesh: Mesh) -> Array:
-        """Return the matrix from nodal pressures to the deflection at the nodes [u_Hz per p_Hz].
-
-        Pressures on the panel through infinity deflect nothing: beyond 24 thicknesses nothing is felt, and there they vanish.
-        """
+        """Return the matrix from nodal pressures to the deflection at the nodes [u_Hz per p_Hz]."""
         d = self.layer_thickness
         x = mesh.nodes.reshape(mesh.panels, mesh.order)
         kernel = nodal_deflection(mesh, beyond=False)
@@ -131,6 +128,9 @@ class Layer(Solid):
             column[near] = self._by_whole_kernel(mesh, k, mesh.nodes[near])
         beyond = np.arange(mesh.size - mesh.order, mesh.size)
         kernel[:, beyond] = 0.0
+        # On the panel through infinity, many thicknesses long, a layer yields to the pressure at each place, d S'(0) of it.
+        nu = self.poisson_ratio
+        kernel[beyond, beyond] = 0.5 * d * (1 - 2 * nu) / (1 - nu) ** 2
         return np.asarray(kernel, order="F")
 
     def _smooth_part(self, x: Array, y: Array) -> Array:
