@@ -103,6 +103,14 @@ def test_what_is_no_quantity_is_refused_in_one_sentence_with_name_value_and_reas
             assert sentence.endswith(".") and "\n" not in sentence and len(sentence) < 250
 
 
+def test_strokes_are_counted_not_measured_by_an_angle():
+    """An angle is a bare number, so that 120 turns a minute made 12.6 strokes a second."""
+    for turning in ("120 rpm", "2 rad/s", "720 deg/s"):
+        with pytest.raises(InputError, match="is an angular velocity; expected how often in a time, such as '2 Hz'"):
+            sb.motions.Sine(stroke="20 mm", frequency=turning)
+    assert sb.motions.Sine(stroke="20 mm", frequency="120 1/min").duration == pytest.approx(0.5)
+
+
 @settings(derandomize=True, deadline=None, max_examples=300)
 @given(st.from_regex(r"[0-9]{1,2} ?[mPaNskgC*/^().0-9µ ]{0,12}", fullmatch=True))
 def test_no_text_whatever_gets_past_the_sentences(text):

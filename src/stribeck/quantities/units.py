@@ -256,6 +256,8 @@ def _factor(unit: str, kind: Dimension, received: str) -> Fraction:
         message = f"{received} is {_noun(found, base)}; expected {kind.noun} such as '{kind.example}'"
         hint = _HINTS.get((found or "", kind.unit))
         raise InputError(f"{message}: {hint}." if hint else f"{message}.")
+    if kind.unit == "1/s" and "radian" in str(base):
+        raise InputError(f"{received} is an angular velocity; expected how often in a time, such as '2 Hz' or '120 1/min'.")
     return Fraction(factor)
 
 
