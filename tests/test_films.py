@@ -350,6 +350,18 @@ def test_the_hysteresis_friction_is_that_of_the_slope_and_within_a_loose_toleran
             assert coarse.hysteresis_friction == pytest.approx(fine.hysteresis_friction, abs=6e-6)
 
 
+def test_the_stated_error_of_the_hysteresis_friction_covers_the_drags_that_it_is_a_small_difference_of():
+    groups, fluid = sb.Groups(3.193873710110155, 0.06010502, 9.4953405e-06), sb.fluids.PowerLaw(0.10736, exponent=0.85861)
+    solid = sb.solids.StandardLinearSolid(0.036962, 78.507)
+    found, true = (sb.solve(groups, rtol=rtol, fluid=fluid, solid=solid) for rtol in (1e-3, 1e-6))
+    off = abs(found.hysteresis_friction - true.hysteresis_friction)
+    assert 0.5 * true.hysteresis_friction < off < found.hysteresis_error  # twice what it is
+    assert true.hysteresis_error < 1e-2 * true.hysteresis_friction
+    ordinary = sb.solve(replace(GROUPS, speed=0.03), solid=sb.solids.StandardLinearSolid(0.25, 4.0))
+    assert 0 < ordinary.hysteresis_error < 1e-6
+    assert ordinary.to_dict()["friction_hysteresis_error"] > 0
+
+
 @pytest.mark.quick
 def test_a_substrate_that_moves_backwards_on_a_body_with_memory_is_refused():
     with pytest.raises(sb.InputError, match="moves against the flow"):

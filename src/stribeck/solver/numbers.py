@@ -139,7 +139,8 @@ def _frictions(solution: Any, boundary_friction: float | None, beta: float | Non
     if with_fields and getattr(solution.groups.model.solid, "uses_speed", False):
         slope = float(solution.groups.slope(coefficients(solution.contact, None, beta)[1]))
         of = "friction coefficient of the losses in a viscoelastic body, beside the others"
-        yield Number("friction_hysteresis", "hysteresis friction, apart", of, solution.hysteresis_friction * slope)
+        value, error = solution.hysteresis_friction * slope, solution.hysteresis_error * slope
+        yield Number("friction_hysteresis", "hysteresis friction, apart", of, value, error)
 
 
 def _observables(solution: Any) -> Iterator[Number]:

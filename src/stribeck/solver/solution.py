@@ -218,20 +218,32 @@ class Solution(BaseSolution):
         It is what the drags of both walls lack of the moment of the pressure (theory.md, section 12), which wide panels hold
         better than the slope of the surface.  With friction factors the drags are others, and that slope is taken.
         """
+        return self._hysteresis[0]
+
+    @property
+    def hysteresis_error(self) -> float:
+        """Estimated absolute error of :attr:`hysteresis_friction` [-]; NaN with friction factors."""
+        return self._hysteresis[1]
+
+    @cached_property
+    def _hysteresis(self) -> tuple[float, float]:
+        """Hysteresis friction, and how far it may be off: its difference from that by the slope, and what the drags err."""
         solid, (exit, cavity_stretch) = self.groups.model.solid, self.origin
         if not getattr(solid, "uses_speed", False):
-            return 0.0
-        if self.groups.model.film.parameters.get("friction_factors") != "true":
-            x = exit + cavity_stretch * self.mesh.nodes
-            pressure = self._pressures[0] + self._pressures[1]
-            moment = cavity_stretch * (x * pressure) @ self.mesh.weights
-            moment = moment + np.sum(self.groups.model.profile.moment(self.mesh, exit, pressure))
-            drags = self.observables.viscous_balanced - self.observables.viscous_upper
-            return float(-drags / (2 * math.sqrt(float(self.groups.load))) - 2 / math.pi * moment)
+            return 0.0, 0.0
         from stribeck.solids.viscoelastic import hysteresis_friction
 
+        pressure = self._pressures[0] + self._pressures[1]
         mesh = replace(self.mesh, edges=cavity_stretch * self.mesh.edges, scale=cavity_stretch * self.mesh.scale)
-        return hysteresis_friction(mesh, solid, self._pressures[0] + self._pressures[1])
+        by_slope = hysteresis_friction(mesh, solid, pressure)
+        if self.groups.model.film.parameters.get("friction_factors") == "true":
+            return by_slope, math.nan
+        moment = cavity_stretch * ((exit + cavity_stretch * self.mesh.nodes) * pressure) @ self.mesh.weights
+        moment = moment + np.sum(self.groups.model.profile.moment(self.mesh, exit, pressure))
+        drags = [(getattr(self.observables, name), self.errors[name]) for name in ("viscous_balanced", "viscous_upper")]
+        per_slope = 1 / (2 * math.sqrt(float(self.groups.load)))
+        found = float((drags[1][0] - drags[0][0]) * per_slope - 2 / math.pi * moment)
+        return found, abs(found - by_slope) + per_slope * sum(abs(drag) * error for drag, error in drags)
 
     def to_si(self, x: Array | None = None) -> Profile:
         """Return the fields in SI units: positions and gaps in m, pressures in Pa.
