@@ -400,6 +400,37 @@ def test_the_standard_deviation_beside_friction_is_its_error(written):
         assert read(path).error == pytest.approx(0.03 * found.friction, rel=1e-6), header
     text = table("speed [mm/s];COF (%);Std. Dev. (%)", speed, lambda u, mu: 100 * mu, lambda u, mu: 3 * mu)
     assert read(written(text)).error == pytest.approx(0.03 * found.friction, rel=1e-6)
+    relative = read(written(table("speed [mm/s];COF;SD [%]", speed, friction, lambda u, mu: 3.0)))
+    assert relative.error == pytest.approx(0.03 * found.friction, rel=1e-6)
+    assert "'SD [%]' is of the friction in each row." in relative.notes
+
+
+def test_means_and_deviations_below_the_rows_are_no_rows(subtests, written):
+    rows = table("Nr.;speed [mm/s];COF", lambda u, mu: 7, speed, friction)
+    for footer in ("Mittelwert;37;0.3\nStandardabweichung;54;0.2", "Mean;;0.3\nMax.;300;0.5", "Std. Dev.:;54;0.2"):
+        with subtests.test(footer=footer):
+            found = read(written(f"{rows.strip()}\n{footer}\n"))
+            assert_on_curve(found)
+            assert any("below the numbers left out: 10" in note for note in found.notes)
+    alone = "speed [mm/s];what;COF\n1;mean;0.5\n10;mean;0.3\n100;mean;0.1\n"
+    assert len(read(written(alone))) == 3
+
+
+def test_marks_between_thousands_are_refused_by_the_sign_of_other_columns_or_named(written):
+    text = "speed [µm/s]\tCOF\n1,000\t0.5\n10,000\t0.3\n100,000\t0.1\n"
+    assert "'1,000' with a comma" in refusal(written(text)) and "no thousands separator" in refusal(written(text))
+    with pytest.raises(sb.InputError, match="'-2.000' with a point"):
+        sb.profiles.Table(str(written("x [µm];z [nm]\n-2.000;200,5\n-1.000;50,2\n0;0\n1.000;50,1\n2.000;200,4\n")))
+    found = read(written("speed [µm/s];COF [%]\n1.000;50\n10.000;30\n100.000;10\n"))
+    assert "'speed [µm/s]': '1.000' was read with a decimal point; marks between thousands must go." in found.notes
+    assert not any("thousands" in note for note in read(written(table("speed [mm/s];COF", speed, friction))).notes)
+
+
+def test_a_line_above_the_header_says_an_input_in_any_usual_form(subtests, written):
+    rows = table("speed [mm/s];COF", speed, friction)
+    for line in ("Viscosity:;50 mPa*s", '"Viscosity";"50 mPa*s"', "Viscosity [mPa*s]:;50", "viscosity = 0,05 Pa*s"):
+        with subtests.test(line=line):
+            assert read(written(f"{line}\n{rows}")).inputs[0]["viscosity"] == pytest.approx(0.05)
 
 
 def workbook(tmp_path, **sheets):
@@ -460,6 +491,18 @@ def test_a_workbook_with_gaps_texts_and_units_is_read(tmp_path):
     found = read(workbook(tmp_path, data=rows))
     assert_on_curve(found)
     assert found.rows[0] == 5
+
+
+def test_a_cell_of_a_workbook_counts_in_the_unit_that_its_format_shows(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl")
+    rows = [[second / 86400, 10.0 if second < 30 else 100.0, 0.3 if second < 30 else 0.2] for second in range(60)]
+    path = workbook(tmp_path, data=[["Zeit", "speed [mm/s]", "COF [%]"], *rows])
+    book = openpyxl.load_workbook(path)
+    for clock, _, mu in book["data"].iter_rows(min_row=2):
+        clock.number_format, mu.number_format = "[h]:mm:ss", '0.0%_"!"'
+    book.save(path)
+    assert set(read(path).friction) == {0.2, 0.3}
+    assert sb.bench.read(path).time[-1] == pytest.approx(59.0)
 
 
 SHEET = "xl/worksheets/sheet1.xml"

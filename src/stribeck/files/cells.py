@@ -13,6 +13,13 @@ MISSING_CELLS = frozenset({"", "-", "--", "---", "na", "n/a", "nan", "null", "no
 
 _MISSING = re.compile(r"[*#-]{2,}|[+-]?nan\(?\w*\)?|[+-]?1\.#\w+|void|invalid|nodata|overflow|ovr|ovf")
 
+# What the cell beside a statistic of the rows above says
+SUMMARY = re.compile(
+    r"(?:mean|average|avg|median|sum|total|min(?:imum)?|max(?:imum)?|r?sd|std|st\.? ?dev|std\.? ?dev|standard ?deviation|cv|"
+    r"mittel(?:wert)?|mw|summe|standardabweichung|stabw|varianz|variance|range|spannweite|n|count|anzahl)\.?(?: value)?:?",
+    re.IGNORECASE,
+)
+
 MAX_LISTED_ROWS = 10  # Rows that a sentence lists
 
 # What may stand in the brackets of a header in place of a unit: the letter of the quantity

@@ -28,7 +28,7 @@ _TURNS = re.compile(r"(?:r\.?p\.?m\.?|rev(?:olutions)?/min|U/min|1/min|/min|min\
 _TURNS_PER_SECOND = re.compile(r"(?:rps|rev/s|U/s|1/s|Hz|s\^?[-−]1|s⁻¹)")
 
 _STATED = re.compile(
-    r"\W*(?P<name>[^:;,=\t\[(]*?)\s*(?:[\[(](?P<before>[^\])]*)[\])])?\s*[:;,=\t]\s*"
+    r"\W*(?P<name>[^:;,=\t\[(]*?)\s*(?:[\[(](?P<before>[^\])]*)[\])])?\s*[:;,=\t][\s:;,=]*"
     r"(?P<value>[-+]?[0-9]+(?:[.,][0-9]+)?(?:[eE][-+]?[0-9]+)?)\s*[;,\t]?\s*[\[(]?(?P<after>(?:[A-Za-zµμ°][^;,:=\t\])]*)?)[\])]?[\s;,]*"
 )
 
@@ -114,14 +114,15 @@ def read_columns(
         found[name] = table.numbers_of(headers[0], functools.partial(column.factor, name), gaps=gaps)
     whole = ~np.isnan(list(found.values())).any(axis=0)
     empty = rows_listed(np.array(table.numbers)[~whole])
-    notes = (*table.notes, f"Rows with an empty cell left out: {empty}.") if empty else table.notes
-    return {name: values[whole] for name, values in found.items()}, notes
+    notes = [*table.notes, *table.thousands_noted([column.names_in(table)[0] for column in wanted.values()])]
+    notes += [f"Rows with an empty cell left out: {empty}."] if empty else []
+    return {name: values[whole] for name, values in found.items()}, tuple(notes)
 
 
 def stated_in(table: TextTable) -> Iterator[tuple[int, str, str, str]]:
     """Yield row, name, number and unit of each quantity that lines above the header give."""
-    texts = [text for _, text in table.above]
-    for (number, text), below in zip(table.above, [*texts[1:], ""], strict=False):
+    texts = [text.replace('"', "") for _, text in table.above]
+    for (number, _), text, below in zip(table.above, texts, [*texts[1:], ""], strict=False):
         # One quantity in a line, several in it, or names whose values stand below.
         pieces = [text, *re.split(r"[;,|]\s+|\t|(?<=[\])]),", text)]
         found = [each for each in (_STATED.fullmatch(piece.strip()) for piece in pieces) if each]

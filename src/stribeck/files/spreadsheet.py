@@ -9,6 +9,7 @@ import re
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from datetime import datetime, timedelta
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -30,6 +31,16 @@ MAX_SHEET_CELLS = 2_000_000  # Cells of a sheet, with the empty ones before the 
 
 MAX_SHEET_ROWS = 1_048_576  # Rows that a sheet can have
 MAX_SHEET_COLUMNS = 16_384  # Columns that a sheet can have
+
+# Formats that a workbook does not spell out: of per cent, dates and times
+_BUILT_IN = (
+    {"9": "0%", "10": "0.00%", "22": "d h"}
+    | dict.fromkeys(("14", "15", "16", "17"), "d")
+    | dict.fromkeys(("18", "19", "20", "21", "45", "46", "47"), "h")
+)
+_QUOTED = re.compile(
+    r'"[^"]*"|\\.|\[\$[^\]]*\]|\[(?:color ?\d+|black|blue|cyan|green|magenta|red|white|yellow)\]', re.IGNORECASE
+)
 
 _CELL = re.compile(r"([A-Z]{1,3})([1-9][0-9]{0,6})")
 
@@ -77,12 +88,39 @@ def _sheets(path: Path, book: zipfile.ZipFile, wanted: str | None) -> Iterator[t
     strings: list[str] = []
     if "xl/sharedStrings.xml" in book.namelist():
         _parse(book, "xl/sharedStrings.xml", {"si": lambda _, text: strings.append(text)})
+    formats = _formats(book) if "xl/styles.xml" in book.namelist() else []
     for name, target in names.items():
         if wanted in (None, name):
-            rows = _Rows(path, strings)
+            rows = _Rows(path, strings, formats)
             part = posixpath.normpath(posixpath.join("/xl", target)).lstrip("/")
             _parse(book, part, {"c": rows.take_cell}, {"row": rows.begin_row})
             yield name, rows.lines()
+
+
+def _formats(book: zipfile.ZipFile) -> list[str]:
+    """Return the number format of each style of cells."""
+    codes = dict(_BUILT_IN)
+    styles: list[str] = []
+    _parse(
+        book,
+        "xl/styles.xml",
+        {"numFmt": lambda each, _: codes.update({each["numFmtId"]: each["formatCode"]})},
+        # The styles of cells come after those that they are derived from.
+        {"cellXfs": lambda _: styles.clear(), "xf": lambda each: styles.append(each.get("numFmtId", "0"))},
+    )
+    return [_QUOTED.sub("", codes.get(style, "")).lower() for style in styles]
+
+
+def _as_shown(value: str, code: str) -> str:
+    """Return the number of a cell as its format shows it where that has a unit: in per cent, as a time or a date."""
+    number = float(value)
+    if not math.isfinite(number):
+        return "nan"
+    if "%" in code:
+        return f"{100 * number:.15g} %"
+    if "y" in code or "d" in code:
+        return str(datetime(1899, 12, 30) + timedelta(milliseconds=round(number * 86_400_000)))
+    return f"{number * 86_400:.12g} s" if "h" in code or "s" in code else value
 
 
 def _parse(
@@ -132,6 +170,7 @@ class _Rows:
 
     path: Path
     strings: list[str]
+    formats: list[str]  # The number format of each style
     cells: dict[int, dict[int, str]] = field(default_factory=dict)
     place: tuple[int, int] = (0, 0)
     widths: dict[int, int] = field(default_factory=dict)
@@ -150,7 +189,13 @@ class _Rows:
         if not text:
             return
         kind = attributes.get("t", "n")
-        text = self.strings[int(text)] if kind == "s" else _TEXTS.get(kind, str)(text)
+        if kind == "n":
+            style = int(attributes.get("s", 0))
+            text = _as_shown(text, self.formats[style] if style < len(self.formats) else "")
+        elif kind == "s":
+            text = self.strings[int(text)]
+        elif kind == "b":
+            text = "TRUE" if text == "1" else "FALSE"
         self.length += len(text)
         if self.length > MAX_WORKBOOK_BYTES:
             raise InputError(
@@ -181,9 +226,3 @@ def _column(letters: str) -> int:
     for letter in letters:
         number = 26 * number + ord(letter) - ord("A") + 1
     return number
-
-
-_TEXTS: dict[str, Callable[[str], str]] = {
-    "n": lambda text: text if math.isfinite(float(text)) else "nan",
-    "b": lambda text: "TRUE" if text == "1" else "FALSE",
-}

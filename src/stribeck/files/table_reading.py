@@ -10,6 +10,7 @@ from pathlib import Path
 from stribeck.files.cells import (
     NUMBER_WITH_COMMA,
     NUMBER_WITH_POINT,
+    SUMMARY,
     has_number,
     number_of,
     rows_listed,
@@ -274,7 +275,9 @@ def _body(
             numbers.append(line.number)
             steps.append(step)
     settle(header_follows=False)
-    return rows, numbers, steps
+    summary = next((k for k in range(len(rows), 0, -1) if not any(map(SUMMARY.fullmatch, rows[k - 1]))), len(rows))
+    summary = max(summary, (len(rows) + 1) // 2)  # a table may be one of means alone
+    return rows[:summary], numbers[:summary], steps[:summary]
 
 
 def _ragged(path: Path, line: Line, cells: list[str], heading: Heading, elsewhere: str) -> str:

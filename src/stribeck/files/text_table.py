@@ -69,6 +69,29 @@ class TextTable:
             )
         return comma is not None
 
+    def _decimal(self, name: str) -> str:
+        """Return the decimal sign of a column; refuse one that marks thousands, as the signs of other columns tell."""
+        if self._may_mark_thousands(name):
+            others = [each for each in self.header if each and each != name and not self._may_mark_thousands(each)]
+            numeric = [each for each in others if all(is_missing(cell) or has_number(cell) for cell in self.column(each))]
+            self.decimal_comma([name, *numeric])
+        return "," if self.decimal_comma([name]) else "."
+
+    def _may_mark_thousands(self, name: str) -> bool:
+        """Return whether each sign in a column may stand between thousands, as in ``1.000``."""
+        marked = [cell for cell in self.column(name) if re.search("[.,]", cell)]
+        return bool(marked) and all(_THOUSANDS.fullmatch(cell) and cell.lstrip("+-")[0] != "0" for cell in marked)
+
+    def thousands_noted(self, names: Sequence[str]) -> list[str]:
+        """Return notes on columns in which a decimal sign might as well stand between thousands."""
+        doubtful = [name for name in names if name in self.header and self._may_mark_thousands(name)]
+        found = []
+        for name in doubtful:
+            cell = next(cell for cell in self.column(name) if re.search("[.,]", cell))
+            sign = "comma" if "," in cell else "point"
+            found.append(f"{show(name)}: {show(cell)} was read with a decimal {sign}; marks between thousands must go.")
+        return found
+
     def column(self, name: str) -> tuple[str, ...]:
         """Return the cells of a column."""
         at = self.header.index(name)
@@ -76,7 +99,7 @@ class TextTable:
 
     def values(self, name: str) -> Array:
         """Return the numbers of a column as written, NaN where a cell holds none."""
-        decimal = "," if self.decimal_comma([name]) else "."
+        decimal = self._decimal(name)
         read = [None if is_missing(cell) else number_of(cell, decimal) for cell in self.column(name)]
         return np.array([np.nan if each is None else each[0] for each in read])
 
@@ -88,7 +111,7 @@ class TextTable:
         ``factor`` of the unit of a cell, or else of the column (``unit`` or that of the table), and of where it stands is what
         a number counts; without it numbers are as written and have no units of their own.
         """
-        decimal = "," if self.decimal_comma([name]) else "."
+        decimal = self._decimal(name)
         column = f"{self.path}: column {show(name)}"
         usual = 1.0 if factor is None else None
         found = np.full(len(self.rows), np.nan)

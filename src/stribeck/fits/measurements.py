@@ -19,6 +19,7 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import rows_listed, split_header
+from stribeck.files.columns import BARE
 from stribeck.files.datasets import Column
 from stribeck.files.results import Exported, Labelled
 from stribeck.files.table_reading import read_table
@@ -29,7 +30,7 @@ from stribeck.fits.repeats import Averaged, Row, average_repeats
 from stribeck.fits.rig import prepared, temperature_note
 from stribeck.fits.stated import entries_of, inputs_said
 from stribeck.fits.strokes import without_stops
-from stribeck.fits.values import Abscissa, checked
+from stribeck.fits.values import Abscissa, checked, unit_in
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import ByValue, Shown
@@ -128,6 +129,11 @@ def read_file(path: PathLike, settings: FitSettings) -> Measurements:
     series = {name: checked(table, columns[name][0], name, settings) for name in given}
     measured = {name: checked(table, name, "friction", settings) for name in frictions}
     errors = checked(table, columns["error"][0], "error", settings) if "error" in columns else np.ones(len(places))
+    # Where friction has no per cent, those of its error are of the friction.
+    units = [
+        BARE.get(unit_in(table, columns[each][0], each, settings), 1.0) for each in ("friction", "error") if each in columns
+    ]
+    is_relative = units[0] == 1.0 and units[-1] < 1.0
     of_runs = table.column(run) if run else [""] * len(places)
     for i, number in enumerate(table.numbers):
         inputs = {name: float(values[i]) for name, values in series.items()}
@@ -136,6 +142,7 @@ def read_file(path: PathLike, settings: FitSettings) -> Measurements:
             if any(map(math.isnan, (place, mu, error, *inputs.values()))):
                 empty.append(number)
                 continue
+            error *= abs(mu) if is_relative else 1.0
             name = labels[i] if len(frictions) == 1 else f"{labels[i]} {split_header(column)[0]}".strip()
             rows.append((name, number, place, mu, error, inputs))
             runs.append(of_runs[i])
@@ -162,6 +169,7 @@ def read_file(path: PathLike, settings: FitSettings) -> Measurements:
         notes=(
             *_notes(table, columns, empty, made, run),
             *map(_idle, idle),
+            *([f"{show(columns['error'][0])} is of the friction in each row."] if is_relative else []),
             *temperature_note(table),
             *averaged.notes,
         ),
@@ -231,6 +239,7 @@ def _notes(
     told = " ".join(made)
     if table.decimal_comma([name for name in table.written if name in used or show(name) in told]):
         notes.append("Numbers were read with decimal commas.")
+    notes += table.thousands_noted([name for name in table.written if name in used])
     if empty:
         count = f"{len(empty)} row{'s' * (len(empty) != 1)}"
         notes.append(f"{count} without a value left out: {rows_listed(sorted(set(empty)))}.")

@@ -69,6 +69,7 @@ def _lines(table: TextTable, settings: FitSettings) -> Iterator[tuple[str, tuple
     """Yield each input that lines above the header give once, with its text and row."""
     found: dict[str, dict[str, int]] = {}
     for number, name, value, unit in stated_in(table):
+        value = value if "." in value else value.replace(",", ".")
         for key, pattern in NAMES.items():
             if unit and is_named(name, pattern) and _is_value(key, f"{value} {unit}", settings):
                 found.setdefault(key, {}).setdefault(f"{value} {unit}", number)
