@@ -149,6 +149,74 @@ def test_positions_along_both_edges_of_a_matrix_are_its_spacing(tmp_path):
         read(tmp_path, "\n".join("\t".join(row) for row in lines), unit="um", spacing="1 um")
 
 
+def test_marks_between_thousands_are_never_read_as_decimals_unsaid(subtests, tmp_path):
+    z = 1e4 + 1e3 * LINE
+    thousands = [f"{v:,.0f}" for v in z]
+    german = [v.replace(",", ".") for v in thousands]
+    some = [f"{v:,.0f}".replace(",", ".") for v in 1e3 * np.abs(LINE)]
+    comma = [f"{x:.3f}".replace(".", ",") for x in X]
+    for case, columns, row, cell in (
+        ("German", (comma, german), 2, german[0]),
+        ("English", (X, thousands), 2, thousands[0]),
+        ("German, of some", (comma, some), some.index(next(v for v in some if "." in v)) + 2, "a point"),
+        ("both marks", (X, [f"{v:,.1f}" for v in z]), 2, "not a number"),
+    ):
+        with subtests.test(case=case), pytest.raises(sb.InputError, match=rf"(row|line) {row}, column.*{cell}"):
+            read(tmp_path, "x [µm];z [nm]\n" + rows(*columns, sep=";", form=("{}", "{}")))
+    for case, options, text in (
+        ("integer positions", {}, "x [µm];z [nm]\n" + rows(range(400), german, sep=";", form=("{}", "{}"))),
+        ("one column", {"spacing": "1 um"}, "z [nm]\n" + "\n".join(thousands)),
+    ):
+        with subtests.test(case=case):
+            scan = read(tmp_path, text, **options)
+            assert scan.heights == pytest.approx(np.rint(z) * 1e-12, rel=1e-12)
+            value = float(german[0])
+            assert any(f"was read as {value:g}, not as {1000 * value:g}." in note for note in scan.notes)
+    assert not read(tmp_path, "x [µm];z [nm]\n" + rows(X, LINE * 100, sep=";", form=("{:.3f}", "{:.3f}"))).notes
+
+
+def test_one_named_column_with_decimal_commas_is_one_column(subtests, tmp_path):
+    for form in ("{:.4f}", "{:.1f}"):
+        heights = rows(LINE, form=(form,)).replace(".", ",")
+        wanted = [float(form.format(v)) * 1e-6 for v in LINE]
+        for case, header, options in (
+            ("spacing given", "Z [µm]", {"spacing": "0.5 um"}),
+            ("spacing above", "Pixelgröße: 0,5 µm\nRa\t0,41 µm\nZ [µm]", {}),
+            ("unit below", "Z\n[µm]", {"spacing": "0.5 um"}),
+        ):
+            with subtests.test(case=case, form=form):
+                scan = read(tmp_path, f"{header}\n{heights}", **options)
+                assert scan.spacing == pytest.approx((0.5e-6,)) and scan.heights == pytest.approx(wanted, abs=1e-15)
+    for header in (",z [um]", "x,z [um]"):  # two columns of whole numbers
+        with pytest.raises(sb.InputError, match="unit of its positions"):
+            read(tmp_path, header + "\n" + rows(10 * np.arange(400), range(400), form=("{}", "{}")))
+
+
+def test_heights_in_one_column_with_lines_and_samples_are_a_map(tmp_path):
+    column = "Height(nm)\n" + rows(MAP.ravel())
+    scan = read(tmp_path, "Scan Size: 24000 nm\n\\Samps/line: 48\n\\Lines: 48\n" + column)
+    assert scan.spacing == pytest.approx((0.5e-6, 0.5e-6)) and scan.heights == pytest.approx(MAP.T * 1e-9, abs=6e-14)
+    assert "48 lines of 48 heights" in scan.notes[0]
+    for counts in ("Samps/line: 48\nLines: 47\n", "Samps/line: 48\n"):
+        with pytest.raises(sb.InputError, match="has 2304 heights in one column, but declares 'Samps/line: 48'"):
+            read(tmp_path, "Scan Size: 24000 nm\n" + counts + column)
+    with pytest.raises(sb.InputError, match="two columns are two channels of a map"):
+        channels = "Height(nm)\tError(nm)\n" + rows(MAP.ravel(), MAP.ravel(), sep="\t")
+        read(tmp_path, "Scan Size: 24000 nm\nSamps/line: 48\nLines: 48\n" + channels)
+    assert read(tmp_path, "Samps/line: 400\nSpacing: 1 um\nz (um)\n" + rows(LINE)).heights.shape == (400,)
+
+
+def test_the_advice_on_a_missing_unit_works(tmp_path):
+    for header, options, advice in (
+        ("x [mm];z", {"height_unit": "um"}, r"unit of its heights; add --height-unit um \(in Python height_unit='um'\)"),
+        ("x;z [um]", {"unit": "mm", "height_unit": "um"}, "unit of its positions; add --unit um --height-unit um"),
+    ):
+        text = f"{header}\n" + rows(X, LINE, sep=";")
+        with pytest.raises(sb.InputError, match=advice):
+            read(tmp_path, text)
+        assert read(tmp_path, text, **options).spacing == pytest.approx((0.156e-3,))
+
+
 def test_a_code_for_no_height_that_the_file_declares_is_missing(tmp_path):
     cells = [f"{v:.4f}" for v in LINE]
     cells[7] = cells[9] = "0.1234"

@@ -221,7 +221,8 @@ def test_what_is_left_out_below_the_heights_is_said(subtests, tmp_path):
     points = "\n".join(["x (um);y (um);z (nm)", *(f"{x:g};{y:g};{z * 1e9:.4f}" for x, y, z in grid_rows(heights, 1))])
     for body, options in ((matrix, {"unit": "nm", "spacing": "1 um"}), (points, {})):
         last = body.count("\n") + 1
-        for footer in ("end of data", "mean\n5", "Sa;Sq\n1;2\n3;4", *(["5"] if body is points else [])):
+        of_points = ["5", "Sa;0.41;nm\nSq;0.5;nm"] if body is points else []
+        for footer in ("end of data", "mean\n5", "Sa;Sq\n1;2\n3;4", *of_points):
             with subtests.test(first=body[:8], footer=footer):
                 path = tmp_path / "scan.txt"
                 path.write_text(f"{body}\n{footer}\n# a comment is none\n")
@@ -245,6 +246,7 @@ TEXTS = {
     "unknown unit in the header": ("x (um);z (foo)\n1;2\n2;3\n", {}, "unit of heights"),
     "ragged": ("1;2\n2;3\n3;4;5\n", {"unit": "um"}, "row 3 has 3 cells where the rows above have 2"),
     "word": ("1;2\n2;oops\n3;4\n", {"unit": "um"}, "line 2, column 2 is 'oops', not a number"),
+    "word before the last row": ("1;2\nRa;0.4\n3;4\n", {"unit": "um"}, "line 2, column 1 is 'Ra', not a number"),
     "no numbers": ("hello\nworld\n", {"unit": "um"}, "no line of numbers"),
     "empty": ("", {"unit": "um"}, "holds no data; give lines of heights"),
     "no position": ("1;2\n;3\n3;4\n", {"unit": "um"}, "line 2 has no position"),

@@ -9,15 +9,17 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.files.cells import NUMBER_WITH_POINT, is_missing
+from stribeck.files.cells import NUMBER_WITH_POINT, has_number, is_missing, rows_listed
+from stribeck.files.reading import text_of
 from stribeck.files.table_reading import read_numbers
+from stribeck.files.text_table import TextTable
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.text_header import Header, header_of, unit_of
 from stribeck.surfaces.topography import MIN_POINTS, Topography, check_missing
@@ -39,6 +41,8 @@ MAX_GRID_DEVIATION = 0.02  # Largest deviation of a position from the even grid,
 SPACING_RTOL = 0.005  # Relative difference of spacings, one given and one in the file, up to which they agree: files round
 
 MAX_FILE_BYTES = 1_000_000_000
+
+_THOUSAND = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}")  # A number whose mark may stand between thousands
 
 _COUNTER = re.compile(r"|#|n|i|nr|no|idx|index|id|row|line|point|punkt|sample|pt|number|count|unnamed 0", re.IGNORECASE)
 
@@ -68,13 +72,20 @@ def read_text(path: Path, *, unit: str | None, height_unit: str | None, spacing:
     positions = {1: 0, 2: 1, 3: 2}.get(columns, 0)
     declared = table.units[positions] if columns <= 3 else table.units[0]
     z_name = "height_unit" if height_unit else "unit"
-    z_factor = _factor(path, z_name, height_unit or unit, declared or table.header.vertical, "heights")
+    lateral, vertical = table.header.lateral, declared or table.header.vertical
+    x_units = [own or lateral for own in table.units[:positions]]
+    z_factor = _factor(path, z_name, height_unit or unit, vertical, "heights", next(filter(None, x_units), lateral))
     if positions == 0:
         return _without_positions(path, table, spacing, z_factor, unit)
+    samples, lines = table.header.samples, table.header.lines
+    if columns == 2 and samples and lines and lines[0] > 1 and samples[0] * lines[0] == len(table.lines):
+        raise InputError(
+            f"{path} declares {show(samples[1])} and {show(lines[1])}, so that its two columns are two channels of a map; "
+            "keep that of the heights."
+        )
     if spacing is not None:
         raise InputError(f"{path} has positions, so spacing = {show(spacing)} is redundant; leave it out.")
-    lateral = table.header.lateral
-    x_factors = [_factor(path, "unit", unit, table.units[i] or lateral, "positions") for i in range(positions)]
+    x_factors = [_factor(path, "unit", unit, x_unit, "positions", vertical) for x_unit in x_units]
     places = table.values[:, :positions] * np.array(x_factors)
     bad = np.isnan(places).any(axis=1)
     if bad.any():
@@ -100,7 +111,7 @@ def _without_positions(path: Path, table: _Table, spacing: Spacing, z_factor: fl
     if values.shape[1] > 1:
         values, found = _without_edges(path, table, unit, notes)
     # A row of the file is a line of the scan, and the first axis is along it.
-    z = values[:, 0] if values.shape[1] == 1 else values.T
+    z = _in_lines(path, values[:, 0], table.header, notes) if values.shape[1] == 1 else values.T
     found = found[: z.ndim]
     if not any(found):
         found = table.header.spacing(path, z.shape)
@@ -124,6 +135,20 @@ def _without_positions(path: Path, table: _Table, spacing: Spacing, z_factor: fl
         apart = " x ".join(f"{step * 1e6:.4g}" for step in steps)
         notes.append(f"Points are {apart} um apart, as declared by {' and '.join(map(show, lines))}.")
     return Topography(z * z_factor, tuple(steps), source=path.name, notes=tuple(notes))
+
+
+def _in_lines(path: Path, z: Array, header: Header, notes: list[str]) -> Array:
+    """Return heights of one column as the map whose samples per line and lines are declared above them, if they are."""
+    samples, lines = header.samples, header.lines
+    if samples is None or (lines is None and samples[0] == z.size):
+        return z
+    if lines is None or samples[0] * lines[0] != z.size:
+        said = show(samples[1]) + (f" and {show(lines[1])}" if lines else " and no number of lines, as in 'Lines: 64'")
+        raise InputError(f"{path} has {z.size} heights in one column, but declares {said}; correct what is declared.")
+    if lines[0] == 1:
+        return z
+    notes.append(f"The column holds {lines[0]} lines of {samples[0]} heights, as declared by {show(samples[1])}.")
+    return z.reshape(lines[0], samples[0]).T
 
 
 def spacing_of(spacing: Spacing, axes: int) -> list[float] | None:
@@ -163,7 +188,7 @@ def _without_edges(
             f"{path}: the first {edge} of the matrix rises in even steps, as positions do; remove it and give the distance "
             "between points with --spacing, or write x, y and height in three columns."
         )
-    factor = _factor(path, "unit", unit, table.header.lateral or table.units[0], "positions")
+    factor = _factor(path, "unit", unit, table.header.lateral or table.units[0], "positions", None)
     return kept, (
         (float(abs(row[-1] - row[1])) / (row.size - 2) * factor, "positions in the first row"),
         (float(abs(column[-1] - column[1])) / (column.size - 2) * factor, "positions in the first column"),
@@ -266,13 +291,17 @@ def _map(path: Path, places: Array, z: Array, table: _Table, rounding: list[floa
     return Topography(heights, tuple(steps), source=path.name, notes=table.notes)
 
 
-def _factor(path: Path, name: str, given: str | None, declared: str | None, what: str) -> float:
-    """Return the length in m of one unit, from the option or from the header."""
+def _factor(path: Path, name: str, given: str | None, declared: str | None, what: str, other: str | None) -> float:
+    """Return the length in m of one unit, from the option or from the header, which may declare only the ``other`` one."""
     if given is None and declared is None:
+        option, argument = "--unit um, and --height-unit nm where heights have another one", "unit='um', height_unit='nm'"
+        if other and what == "heights":
+            option, argument = "--height-unit um", "height_unit='um'"
+        elif other:
+            option, argument = f"--unit um --height-unit {other}", f"unit='um', height_unit={show(other)}"
         raise InputError(
-            f"{path} does not declare the unit of its {what}; add --unit um, and --height-unit nm where "
-            f"heights have another one "
-            "(in Python unit='um', height_unit='nm'), or write it in the header as in 'x (um), z (nm)'."
+            f"{path} does not declare the unit of its {what}; add {option} (in Python {argument}), "
+            "or write it in the header as in 'x (um), z (nm)'."
         )
     factors = [
         to_si(f"1 {text}", "length", name if text is given else f"{path}: the unit of {what}")
@@ -287,15 +316,15 @@ def _factor(path: Path, name: str, given: str | None, declared: str | None, what
 def _table(path: Path) -> _Table:
     expected = "give lines of heights, with positions or without"
     found = read_numbers(path, expected, lambda name: unit_of(name) is not None, _numbers_in, MAX_FILE_BYTES)
+    notes = list(found.notes)
+    below = _rows_of_words_below(found.rows)
+    if below:
+        left_out = found.numbers[-below:]
+        notes.append(f"{below} row{'s' * (below > 1)} below the numbers left out: {rows_listed(left_out)}.")
+        found = replace(found, rows=found.rows[:-below], numbers=found.numbers[:-below])
+    found = _with_decimal_commas(path, found)
     cells, numbers, width = [list(row) for row in found.rows], list(found.numbers), len(found.header)
-    if not any(found.header) and width == 2 and found.separator == "comma":
-        if all(re.fullmatch(r"[+-]?\d+,\d+([eE][+-]?\d+)?", ",".join(row)) for row in cells):
-            raise InputError(
-                f"{path}: '{','.join(cells[0])}' may be two columns or one number with a decimal comma; write points, or ; "
-                "between columns."
-            )
-    comma = found.separator != "comma" and any("," in cell for row in cells for cell in row)
-    names, notes = list(found.header), list(found.notes)
+    names = list(found.header)
     if found.units_row:
         names = [f"{name} ({unit})" if unit else name for name, unit in zip(names, found.units_row, strict=True)]
     # Columns without a height hold nothing, but in a map they may be points that were missed.
@@ -304,6 +333,11 @@ def _table(path: Path) -> _Table:
         notes.append("The first column numbers the points and was left out.")
         kept = kept[1:]
     cells = [[row[j] for j in kept] for row in cells]
+    comma = False
+    if found.separator != "comma" and any("," in cell for row in cells for cell in row):
+        called = tuple(names[j] or str(j + 1) for j in kept)
+        shown = replace(found, header=called, rows=tuple(map(tuple, cells)))
+        comma = not any("." in cell for row in cells for cell in row) or shown.decimal_comma(called)
     above = [*(line for _, line in found.above), ";".join(found.header)]
     header = header_of(path, (line.lstrip("#%;!*/ ") for line in above))
     values, missing_notes = _values(path, cells, numbers, comma=comma, codes=header.codes)
@@ -314,7 +348,51 @@ def _table(path: Path) -> _Table:
     units = [unit_of(name) for name in names]
     if len(units) > 3 and any(units):
         units = [next(unit for unit in units if unit)] * len(units)
-    return _Table(values, cells, numbers, names, units, header, (*notes, *missing_notes))
+    return _Table(values, cells, numbers, names, units, header, (*notes, *_thousands_notes(cells, names), *missing_notes))
+
+
+def _rows_of_words_below(rows: Sequence[Sequence[str]]) -> int:
+    """Return how many rows below those of numbers begin with a word, as ``Ra;0.41`` does."""
+    first = [next(filter(None, row), "") for row in reversed(rows)]
+    return next((k for k, cell in enumerate(first) if is_missing(cell) or has_number(cell)), 0)
+
+
+def _with_decimal_commas(path: Path, table: TextTable) -> TextTable:
+    """Return a table of one column whose decimal commas split it in two as one column; refuse it without a name."""
+    of_pairs = len(table.header) == 2 and table.separator == "comma"
+    if not of_pairs or not all(re.fullmatch(r"[+-]?\d+,\d+([eE][+-]?\d+)?", ",".join(row)) for row in table.rows):
+        return table
+    first, name = table.header
+    if not (first or name):
+        raise InputError(
+            f"{path}: '{','.join(table.rows[0])}' may be two columns or one number with a decimal comma; write points, or ; "
+            "between columns."
+        )
+    if first or _numbers_rows(np.array([float(row[0]) for row in table.rows])):
+        return table
+    # A header such as ',z (um)' names two columns.
+    above = text_of(path, MAX_FILE_BYTES, "crop the scan", "text").splitlines()[: table.numbers[0] - 1]
+    if "," in next((line for line in reversed(above) if "".join(name.split()) in "".join(line.split())), ","):
+        return table
+    units = tuple(filter(None, table.units_row))[:1]
+    rows = tuple((",".join(row),) for row in table.rows)
+    return replace(table, header=(name,), units_row=units, rows=rows, separator="space")
+
+
+def _thousands_notes(cells: list[list[str]], names: list[str]) -> list[str]:
+    """Return how columns were read in which every mark may stand between thousands."""
+    if len(names) > 3:
+        columns: list[tuple[str, Iterator[str]]] = [("", (cell for row in cells for cell in row))]
+    else:
+        columns = [(name or str(j + 1), (row[j] for row in cells)) for j, name in enumerate(names)]
+    notes = []
+    for name, column in columns:
+        marked = (cell for cell in column if ("." in cell or "," in cell) and not _is_missing(cell))
+        first = next(marked, "")
+        if _THOUSAND.fullmatch(first) and all(map(_THOUSAND.fullmatch, marked)):
+            number, where = float(first.replace(",", ".")), f"Column {show(name)}: " if name else ""
+            notes.append(f"{where}{show(first)} was read as {number:g}, not as {1000 * number:g}.")
+    return notes
 
 
 def _is_missing(cell: str) -> bool:

@@ -40,6 +40,10 @@ _UNIT_LINE = re.compile(r"([^:=;,\t]*?)units?\b([^:=;,\t]*?)\s*[:=;,\t]+\s*([^\s
 _CODE_LINE = re.compile(
     rf"[^:=;,\t]*(?:no[ _-]?data|missing|invalid|bad|void|fehl)[^:=;,\t]*[:=;,\t\s]+\s*({_NUMBER})\W*", re.IGNORECASE
 )
+_COUNT_LINE = re.compile(
+    r"\W*(?:((?:samp(?:le)?s?|points|pixels)\s*(?:/|per)\s*line)|(?:number of |scan )?lines)\s*[:=;,\t]+\s*(\d+)[\s;,\t]*",
+    re.IGNORECASE,
+)
 _OTHER = re.compile(
     r"\b(z|values?|speed|time|force|minimum|maximum|min|max|cut ?off|filter|lambda|tip|radius|wavelengths?|offset|position|"
     r"origin|start|end|focus|objective|magnification|rms|s?[rs]aq?|sigma|standard|file|data)\b"
@@ -62,6 +66,8 @@ class Header:
     steps: dict[int, tuple[float, str]] = field(default_factory=dict)
     sizes: dict[int, tuple[float, str]] = field(default_factory=dict)
     codes: tuple[str, ...] = ()  # Numbers that stand for no height
+    samples: tuple[int, str] | None = None  # Heights in each line of a scan, and what says so
+    lines: tuple[int, str] | None = None  # Lines of a scan, and what says so
 
     def spacing(self, path: Path, shape: tuple[int, ...]) -> tuple[tuple[float, str] | None, ...]:
         """Return the distance between points along each axis and the line it is from, None where the header is silent."""
@@ -94,6 +100,7 @@ def unit_of(cell: str) -> str | None:
 def header_of(path: Path, lines: Iterable[str]) -> Header:
     """Return what lines above the heights declare of their units, sizes, steps and codes."""
     lateral = vertical = None
+    samples = in_scan = None
     steps, sizes = dict[int, tuple[float, str]](), dict[int, tuple[float, str]]()
     heights: list[tuple[float, str]] = []
     codes = []
@@ -102,6 +109,11 @@ def header_of(path: Path, lines: Iterable[str]) -> Header:
         code = _CODE_LINE.fullmatch(line)
         if code:
             codes.append(code[1])
+            continue
+        count = _COUNT_LINE.fullmatch(line)
+        if count:
+            declared = int(count[2]), raw.strip()
+            samples, in_scan = (declared, in_scan) if count[1] else (samples, declared)
             continue
         unit = _UNIT_LINE.fullmatch(line)
         if unit and not re.fullmatch(_NUMBER, unit[3]):
@@ -115,7 +127,7 @@ def header_of(path: Path, lines: Iterable[str]) -> Header:
         _size_or_step(path, line, raw.strip(), steps, sizes, heights)
     if heights and 0 in sizes:  # the height of a map beside its width, as Gwyddion writes them
         sizes.setdefault(1, heights[0])
-    return Header(lateral, vertical, steps, sizes, tuple(codes))
+    return Header(lateral, vertical, steps, sizes, tuple(codes), samples, in_scan)
 
 
 def _normalised(text: str) -> str:
