@@ -325,6 +325,18 @@ def test_a_table_of_a_shape_is_that_shape(tmp_path):
         sb.profiles.Table(x[::-1], x)
 
 
+def test_a_file_of_a_shape_may_go_backwards_and_wrong_rows_are_named(tmp_path):
+    path = tmp_path / "lip.csv"
+    rows = ["2;200", "1;50", "0;0", "-1;50", "-2;210"]
+    path.write_text("\n".join(["x [mm];z [um]", *rows]))
+    table = sb.profiles.Table(path)
+    assert table.x == pytest.approx((-2e-3, -1e-3, 0, 1e-3, 2e-3)) and table.z == pytest.approx((2.1e-4, 5e-5, 0, 5e-5, 2e-4))
+    for wrong in (["2;200", "0;50", "1;0", "-1;50", "-2;210"], ["-2;200", "0;50", "0;0", "1;50", "2;210"]):
+        path.write_text("\n".join(["# a comment", "x [mm];z [um]", *wrong]))
+        with pytest.raises(sb.InputError, match=r"lip\.csv: row 5 has a position of .* in row 4; sort the rows"):
+            sb.profiles.Table(path)
+
+
 def test_slow_smooth_films_follow_the_edge_of_the_dry_pressure(subtests):
     """The film of a smooth soft body by its inlet: 0.4458 lambda^(3/5) (k^2/2)^(-2/5), which lands and cylinders share."""
     for shape in (None, of_unit_width(lambda c: Land(0.5, c), [2.0]), LAND):

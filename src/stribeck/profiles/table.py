@@ -34,8 +34,8 @@ class Table(Shape):
     Parameters
     ----------
     x : array_like or str, optional
-        Positions along the contact, ascending [m]; or the name of a CSV file with a column of positions and one of heights,
-        both with units in their headings.
+        Positions along the contact, ascending [m]; or the name of a CSV file with a column of positions, ascending or
+        descending, and one of heights, both with units in their headings.
     z : array_like, optional
         Heights of the body's surface above the plane that it touches [m].
     reversed : bool
@@ -202,7 +202,18 @@ def from_pressure(x: Any, p: Any, modulus: str | float, reversed: bool = False) 
 def _columns_of(path: Path) -> tuple[Array, Array]:
     """Return positions and heights from a file [m]."""
     from stribeck.files.columns import Column, read_columns  # slow to import, and most shapes name no file
+    from stribeck.files.table_reading import read_table
 
     columns = {name: Column(name, "length") for name in ("x", "z")}
-    found, _ = read_columns(path, "the first line must be 'x [mm], z [mm]', with the units of the file", columns)
-    return found["x"], found["z"]
+    advice = "the first line must be 'x [mm], z [mm]', with the units of the file"
+    found, _ = read_columns(path, advice, columns)
+    x, z = found["x"], found["z"]
+    way = -1 if x[-1] < x[0] else 1  # -1 where the rows go backwards
+    wrong = np.flatnonzero(way * np.diff(x) <= 0)
+    if wrong.size:
+        rows = read_table(path, expected=advice).numbers
+        raise InputError(
+            f"{path}: row {rows[int(wrong[0]) + 1]} has a position of {x[wrong[0] + 1]:g} m after {x[wrong[0]]:g} m in row "
+            f"{rows[int(wrong[0])]}; sort the rows by x, with one height at each position."
+        )
+    return x[::way], z[::way]
