@@ -422,8 +422,8 @@ def test_marks_between_thousands_are_refused_by_the_sign_of_other_columns_or_nam
     with pytest.raises(sb.InputError, match="'-2.000' with a point"):
         sb.profiles.Table(str(written("x [µm];z [nm]\n-2.000;200,5\n-1.000;50,2\n0;0\n1.000;50,1\n2.000;200,4\n")))
     found = read(written("speed [µm/s];COF [%]\n1.000;50\n10.000;30\n100.000;10\n"))
-    assert "'speed [µm/s]': '1.000' was read with a decimal point; marks between thousands must go." in found.notes
-    assert not any("thousands" in note for note in read(written(table("speed [mm/s];COF", speed, friction))).notes)
+    assert "'speed [µm/s]': '1.000' was read as 1, not as 1000." in found.notes
+    assert not any("was read as" in note for note in read(written(table("speed [mm/s];COF", speed, friction))).notes)
 
 
 def test_a_line_above_the_header_says_an_input_in_any_usual_form(subtests, written):

@@ -13,6 +13,9 @@ MISSING_CELLS = frozenset({"", "-", "--", "---", "na", "n/a", "nan", "null", "no
 
 _MISSING = re.compile(r"[*#-]{2,}|[+-]?nan\(?\w*\)?|[+-]?1\.#\w+|void|invalid|nodata|overflow|ovr|ovf")
 
+# A number whose signs may stand between thousands
+THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:[,.' ][0-9]{3})+(?:[.,][0-9]+)?")
+
 # What the cell beside a statistic of the rows above says
 SUMMARY = re.compile(
     r"(?:mean|average|avg|median|sum|total|min(?:imum)?|max(?:imum)?|r?sd|std|st\.? ?dev|std\.? ?dev|standard ?deviation|cv|"
@@ -140,6 +143,19 @@ def looks_like_units(cell: str) -> bool:
 def has_number(cell: str) -> bool:
     """Return whether a cell holds a number, with or without a unit."""
     return any(sign.isdigit() for sign in cell) and number_of(cell, ",") is not None
+
+
+def thousands_in(cells: Iterable[str]) -> str:
+    """Return the first of the cells with a decimal sign if in each of them it may stand between thousands, else nothing."""
+    marked = (cell for cell in cells if ("." in cell or "," in cell) and not is_missing(cell))
+    first = next(marked, "")
+    return first if THOUSANDS.fullmatch(first) and all(map(THOUSANDS.fullmatch, marked)) else ""
+
+
+def read_as(cell: str) -> str:
+    """Return how a number is read whose sign may stand between thousands."""
+    number = float(cell.replace(",", "."))
+    return f"{cell!r} was read as {number:g}, not as {1000 * number:g}."
 
 
 def rows_listed(numbers: Iterable[object], most: int = MAX_LISTED_ROWS) -> str:

@@ -14,16 +14,18 @@ from stribeck.files.cells import (
     NUMBER_WITH_COMMA,
     NUMBER_WITH_POINT,
     NUMBER_WITH_UNIT,
+    THOUSANDS,
     has_number,
     is_missing,
     number_of,
+    read_as,
     split_header,
+    thousands_in,
 )
 from stribeck.quantities.units import InputError, show
 
 CURVE_HEADER = "curve"  # Header of the column that names the curves of a file that has them side by side
 
-_THOUSANDS = re.compile(r"[+-]?[0-9]{1,3}(?:[,.' ][0-9]{3})+(?:[.,][0-9]+)?")
 _PLUS_MINUS = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
 
 
@@ -71,26 +73,16 @@ class TextTable:
 
     def _decimal(self, name: str) -> str:
         """Return the decimal sign of a column; refuse one that marks thousands, as the signs of other columns tell."""
-        if self._may_mark_thousands(name):
-            others = [each for each in self.header if each and each != name and not self._may_mark_thousands(each)]
+        if thousands_in(self.column(name)):
+            others = [each for each in self.header if each and each != name and not thousands_in(self.column(each))]
             numeric = [each for each in others if all(is_missing(cell) or has_number(cell) for cell in self.column(each))]
             self.decimal_comma([name, *numeric])
         return "," if self.decimal_comma([name]) else "."
 
-    def _may_mark_thousands(self, name: str) -> bool:
-        """Return whether each sign in a column may stand between thousands, as in ``1.000``."""
-        marked = [cell for cell in self.column(name) if re.search("[.,]", cell)]
-        return bool(marked) and all(_THOUSANDS.fullmatch(cell) and cell.lstrip("+-")[0] != "0" for cell in marked)
-
     def thousands_noted(self, names: Sequence[str]) -> list[str]:
-        """Return notes on columns in which a decimal sign might as well stand between thousands."""
-        doubtful = [name for name in names if name in self.header and self._may_mark_thousands(name)]
-        found = []
-        for name in doubtful:
-            cell = next(cell for cell in self.column(name) if re.search("[.,]", cell))
-            sign = "comma" if "," in cell else "point"
-            found.append(f"{show(name)}: {show(cell)} was read with a decimal {sign}; marks between thousands must go.")
-        return found
+        """Return how columns were read in which each decimal sign may stand between thousands."""
+        examples = [(name, thousands_in(self.column(name))) for name in names if name in self.header]
+        return [f"{show(name)}: {read_as(cell)}" for name, cell in examples if cell]
 
     def column(self, name: str) -> tuple[str, ...]:
         """Return the cells of a column."""
@@ -122,7 +114,7 @@ class TextTable:
             read = number_of(cell, decimal)
             if read is None or (read[1] and factor is None):
                 advice = "leave the cell empty where a value is missing" if gaps else "each row needs a number"
-                if _THOUSANDS.fullmatch(cell):
+                if THOUSANDS.fullmatch(cell):
                     advice = "write it without marks between thousands"
                 raise InputError(f"{where}: {show(cell)} is not a number; {advice}.")
             number, own = read

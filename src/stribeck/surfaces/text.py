@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.files.cells import NUMBER_WITH_POINT, has_number, is_missing, rows_listed
+from stribeck.files.cells import NUMBER_WITH_POINT, has_number, is_missing, read_as, rows_listed, thousands_in
 from stribeck.files.reading import text_of
 from stribeck.files.table_reading import read_numbers
 from stribeck.files.text_table import TextTable
@@ -41,8 +41,6 @@ MAX_GRID_DEVIATION = 0.02  # Largest deviation of a position from the even grid,
 SPACING_RTOL = 0.005  # Relative difference of spacings, one given and one in the file, up to which they agree: files round
 
 MAX_FILE_BYTES = 1_000_000_000
-
-_THOUSAND = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}")  # A number whose mark may stand between thousands
 
 _COUNTER = re.compile(r"|#|n|i|nr|no|idx|index|id|row|line|point|punkt|sample|pt|number|count|unnamed 0", re.IGNORECASE)
 
@@ -385,14 +383,8 @@ def _thousands_notes(cells: list[list[str]], names: list[str]) -> list[str]:
         columns: list[tuple[str, Iterator[str]]] = [("", (cell for row in cells for cell in row))]
     else:
         columns = [(name or str(j + 1), (row[j] for row in cells)) for j, name in enumerate(names)]
-    notes = []
-    for name, column in columns:
-        marked = (cell for cell in column if ("." in cell or "," in cell) and not _is_missing(cell))
-        first = next(marked, "")
-        if _THOUSAND.fullmatch(first) and all(map(_THOUSAND.fullmatch, marked)):
-            number, where = float(first.replace(",", ".")), f"Column {show(name)}: " if name else ""
-            notes.append(f"{where}{show(first)} was read as {number:g}, not as {1000 * number:g}.")
-    return notes
+    found = ((name, thousands_in(column)) for name, column in columns)
+    return [f"Column {show(name)}: {read_as(cell)}" if name else read_as(cell) for name, cell in found if cell]
 
 
 def _is_missing(cell: str) -> bool:
