@@ -73,6 +73,42 @@ def test_files_have_hertz_or_radians_and_any_unit_of_modulus(subtests, tmp_path)
             assert found.relaxed_modulus == pytest.approx(RELAXED, rel=1e-4, abs=0)
 
 
+def test_moduli_of_shear_become_those_of_tension_and_a_header_that_does_not_say_which_draws_a_note(subtests, tmp_path):
+    assumed, turned = "taken for those of tension", "multiplied by 2 (1 + nu)"
+    for storage, loss, factor, said in (
+        ("G'", "G''", 2.6, turned),
+        ("Storage modulus G'", "Loss modulus G''", 2.6, turned),
+        ("Storage modulus (G')", "Loss modulus (G″)", 2.6, turned),
+        ("Shear storage modulus", "Shear loss modulus", 2.6, turned),
+        ("Storage modulus, shear", "Loss modulus, shear", 2.6, turned),
+        ("Speichermodul G'", "Verlustmodul G''", 2.6, turned),
+        ("Schubspeichermodul", "Schubverlustmodul", 2.6, turned),
+        ("Speichermodul E'", "Verlustmodul E''", 1.0, ""),
+        ("Tensile storage modulus", "Young's loss modulus", 1.0, ""),
+        ("E_storage", "E_loss", 1.0, ""),
+        ("Storage modulus", "Loss modulus", 1.0, assumed),
+        ("E'", "Loss modulus", 1.0, assumed),
+    ):
+        with subtests.test(storage=storage, loss=loss):
+            path = write(tmp_path / "a.csv", f"frequency [Hz];{storage} [MPa];{loss} [MPa]")
+            found = sb.solids.from_master_curve(path, poisson_ratio=0.3)
+            assert found.relaxed_modulus == pytest.approx(factor * RELAXED, rel=1e-4, abs=0)
+            assert [note for note in found.notes if assumed in note or turned in note] == (
+                [note for note in found.notes if said in note] if said else []
+            )
+            assert not said or any(said in note for note in found.notes)
+    with pytest.raises(sb.InputError, match="none of which is the loss modulus"):
+        sb.solids.from_master_curve(write(tmp_path / "b.csv", "frequency [Hz];E' [MPa];G'' [MPa]"))
+
+
+def test_a_frequency_per_second_says_that_it_was_taken_for_the_angular_one(tmp_path):
+    for unit, factor in (("1/s", 1.0), ("rad/s", 1.0), ("Hz", 2 * np.pi)):
+        path = write(tmp_path / "a.csv", f"Frequency [{unit}];E' [MPa];E'' [MPa]", factor=factor)
+        found = sb.solids.from_master_curve(path)
+        assert found.frequency == pytest.approx(OMEGA)
+        assert any("taken for the angular one" in note for note in found.notes) == (unit == "1/s")
+
+
 def test_a_case_names_the_file_and_says_how_well_it_was_followed(capsys, tmp_path):
     write(tmp_path / "rubber.csv")
     text = (

@@ -38,6 +38,14 @@ NO_SCATTER = 1e-6  # Relative scatter below which values are as good as computed
 POOR_FIT = 0.1  # Rms deviation above which a note says that the series does not follow the curve
 NO_PLATEAU = 1.5  # Storage modulus at the lowest frequency over the relaxed one from which the curve shows no plateau
 
+# Names of moduli in the headers of files: words and primes, and the letter and the words of what they are of.
+MODULI = {
+    "storage modulus": (r"storage(?: modulus)?|speichermodul", "['′’´`]"),
+    "loss modulus": (r"loss(?: modulus)?|verlustmodul", "(?:['′’´`]{2}|[\"″”])"),
+}
+TENSION, SHEAR = " of tension", " of shear"
+KINDS = {TENSION: ("e", "tensile|young.?s|zug"), SHEAR: ("g", "shear|schub|scher")}
+
 POISSON_RATIO = Input(
     name="poisson_ratio", label="Poisson ratio of the rubber", dimension="number", typical="0.5", source="rubber",
     zero=True, highest=0.5,
@@ -205,10 +213,12 @@ def from_master_curve(path: str | os.PathLike[str], *, poisson_ratio: float = 0.
     Parameters
     ----------
     path : str or path-like
-        A text file or spreadsheet with columns of frequency, storage and loss modulus of tension, with units, such as
-        ``frequency [Hz]; E' [MPa]; E'' [MPa]``; other columns are left out. ``rad/s`` is an angular frequency.
+        A text file or spreadsheet with columns of frequency, storage and loss modulus, with units, such as
+        ``frequency [Hz]; E' [MPa]; E'' [MPa]``; other columns are left out. ``rad/s`` and ``1/s`` are of an angular
+        frequency. Moduli of shear, G' and G'', are multiplied by 2 (1 + nu); moduli of which the header does not say what
+        they are of are taken for those of tension.
     poisson_ratio : float
-        Poisson's ratio, 0 to 0.5 [-].
+        Poisson's ratio nu, 0 to 0.5 [-].
 
     Returns
     -------
@@ -222,21 +232,47 @@ def from_master_curve(path: str | os.PathLike[str], *, poisson_ratio: float = 0.
     """
     from stribeck.files.columns import Column, read_columns  # slow to import, and most solids have no file
 
-    advice = "name the columns 'frequency [Hz]', 'storage modulus [MPa]' and 'loss modulus [MPa]', with the units of the file"
+    advice = (
+        "name the columns 'frequency [Hz]' and E' [MPa] and E'' [MPa], moduli of tension, or G' [MPa] and G'' [MPa], those of "
+        "shear, with the units of the file"
+    )
+    pattern = r"(angular |reduced |shifted )?(frequency|freq)|omega|ω|f|frequenz|kreisfrequenz"
     units = {"Hz": 2 * math.pi, "kHz": 2e3 * math.pi, "MHz": 2e6 * math.pi, "rad/s": 1.0, "1/s": 1.0}
-    columns = {
-        "frequency": Column(
-            r"(angular |reduced |shifted )?(frequency|freq)|omega|ω|f|frequenz|kreisfrequenz", "rotation", units
-        ),
-        "storage modulus": Column(r"(tensile |young s )?storage( modulus)?|e'|e′|e storage|speichermodul", "pressure"),
-        "loss modulus": Column(r"(tensile |young s )?loss( modulus)?|e''|e″|e′′|e\"|e loss|verlustmodul", "pressure"),
+    frequency = {
+        "frequency": Column(pattern, "rotation", units),
+        # The same column, zero but for 1/s, of which a note tells what it was taken for
+        "frequency in 1/s": Column(pattern, "rotation", dict.fromkeys(units, 0.0) | {"1/s": 1.0}),
     }
-    values, notes = read_columns(path, advice, columns, gaps=True)
+    names = {of: [_named(*words, *said) for words in MODULI.values()] for of, said in KINDS.items()}
+    names[""] = [f"{words}|{tension}" for (words, _), tension in zip(MODULI.values(), names[TENSION], strict=True)]
+    choices = (
+        {f"{name}{of}": Column(each, "pressure") for name, each in zip(MODULI, patterns, strict=True)}
+        for of, patterns in names.items()
+    )
+    values, notes = read_columns(path, advice, *(frequency | choice for choice in choices), gaps=True)
+    omega, per_second, *moduli = values.values()
+    if per_second.any():
+        notes += ("Frequency in 1/s was taken for the angular one, in rad/s; write Hz where it counts cycles.",)
+    factor = 1.0
+    if all(f"{name}{SHEAR}" in values for name in MODULI):
+        factor = 2 * (1 + POISSON_RATIO.checked(poisson_ratio))
+        notes += (f"Moduli of shear, G' and G'', were multiplied by 2 (1 + nu) = {factor:g} to become those of tension.",)
+    elif not any(f"{name}{TENSION}" in values for name in MODULI):
+        notes += ("Moduli were taken for those of tension, E' and E''; call moduli of shear G' and G'' in the header.",)
     try:
-        found = fit_prony(*values.values(), poisson_ratio=poisson_ratio)
+        found = fit_prony(omega, *(factor * each for each in moduli), poisson_ratio=poisson_ratio)
     except InputError as problem:
         raise InputError(f"{path}: {problem}") from None
     return replace(found, notes=(*notes, *found.notes))
+
+
+def _named(words: str, sign: str, letter: str, kind: str) -> str:
+    """Return the pattern of the headers that say of what the modulus is that they name by its words or its sign."""
+    signed = rf"\(?{letter}{sign}\)?"
+    return (
+        rf"(?:{kind}) ?(?:{words})(?:[ ,]*{signed})?|(?:(?:{words})[ ,]*)?{signed}|(?:{words})[ ,]+\(?(?:{kind})\)?|"
+        rf"{letter} (?:{words})|{signed}[ ,]+\(?(?:{words})\)?"
+    )
 
 
 def _terms(omega: Array, times: Array) -> Array:
