@@ -330,6 +330,30 @@ def test_a_rotation_without_a_radius_is_refused_by_what_is_missing(written):
     assert "track_radius = -1" in str(pytest.raises(sb.InputError, fit_settings, {"track_radius": -1}).value)
 
 
+def test_the_rotation_of_one_of_two_surfaces_is_no_speed(subtests, written):
+    for header in (
+        "Ball speed [rpm];Disc speed [rpm];COF",
+        "Ball rpm;Speed [rpm];COF",
+        "Upper specimen speed [rpm];Lower specimen speed [1/min];COF",
+        "Rotational speed [rpm];Counterbody rotation [rpm];COF",
+        "Roller 1 speed [rpm];Roller 2 speed [rpm];COF",
+        "Drehzahl Kugel [1/min];Drehzahl Scheibe [1/min];Reibwert",
+        "Ball speed [rpm];Disc speed [mm/s];COF",
+    ):
+        with subtests.test(header=header):
+            path = written(table(header, speed, lambda u, mu: 2 * u, friction))
+            for settings in ({}, {"track_radius": "9 mm"}):
+                said = refusal(path, **settings)
+                assert "may be of two surfaces" in said and "'mean speed [mm/s]', half the sum" in said and "'SRR [%]'" in said
+    both = table("Ball speed [rpm];Disc speed [rpm];COF", lambda u, mu: 7, speed, friction)
+    found = read(written(both), columns={"rotation": "Disc speed"}, track_radius="9 mm")
+    assert found.values == pytest.approx(SPEEDS * 2 * np.pi / 60 * 9e-3, rel=1e-8)
+    numbered = table("Ball;Disc;Drehzahl;COF", lambda u, mu: 6, lambda u, mu: 8, speed, friction)
+    assert read(written(numbered), units={"rotation": "rpm"}, track_radius="9 mm").values == pytest.approx(found.values)
+    twice = table("Disk speed [rpm];Disc speed [mm/s];COF", lambda u, mu: 7 * u, speed, friction)
+    assert_on_curve(read(written(twice)))
+
+
 def test_declared_columns_come_before_those_that_are_known_by_their_names(written):
     path = written(
         table(

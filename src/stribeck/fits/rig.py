@@ -21,7 +21,7 @@ from stribeck.files.columns import has_dimension, si_factor, stated_in
 from stribeck.files.text_table import TextTable
 from stribeck.fits.repeats import FEWEST
 from stribeck.fits.values import dimension_of, is_set, named_in_case, numbers, undeclared, unit_in
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, listed, show
 
 __all__ = ["MADE_FRICTION", "MADE_SPEED", "RIG", "column_of", "measured", "prepared", "temperature_note", "temperatures"]
 
@@ -38,6 +38,11 @@ SPEEDS = frozenset({"entrainment_speed", "sliding_speed", "surface_speeds", "rot
 
 _FORCE_OF = r"(?:(?:normal|ball|contact|vertical|applied|nominal|set|target|actual|measured|axial|mean|average|test) )"
 _SPEED = r"(?:speed|velocity)"
+_BODY = (
+    r"(?:(?:ball|disc|disk|roller|ring|pin|wheel|cylinder|specimen|sample|counter ?(?:body|face|part)|kugel|scheibe|rolle|"
+    r"probe|gegenkörper)|(?:upper|lower|top|bottom)(?: (?:ball|disc|disk|roller|ring|specimen|sample|body|surface))?) ?\d?"
+)
+_TURNS = rf"(?:(?:(?:rotation(?:al)?|rotary|angular) )?{_SPEED}|rpm|rotation|drehzahl|rotational frequency)"
 
 # What the words of a header mean, in lower case.
 PATTERNS = {
@@ -50,8 +55,8 @@ PATTERNS = {
     r"(?:friction force|f ?[xtf]) (?:mean|average|avg)|reib(?:ungs)?kraft|friction",
     "normal_force": rf"(?:{_FORCE_OF}+force|{_FORCE_OF}*load|f ?[zn]|normalkraft)(?: mean| average| avg)?",
     "run": r"run|repeat|repetition|cycle|stroke|pass|step|sweep|test( no)?|lauf",
-    "rotation": rf"rpm|n|(?:rotation(?:al)?|rotary|spindle|angular|shaft|disc|disk|motor|drive|set|actual)? ?{_SPEED}|"
-    r"rotation|drehzahl|rotational frequency",
+    "rotation": rf"n|(?:(?:spindle|shaft|motor|drive|set|actual) ?)?{_TURNS}|(?:{_BODY} ?)?{_TURNS}|"
+    rf"{_TURNS} (?:(?:of|der) (?:the )?)?{_BODY}|{_BODY}",
     "torque": r"(?:friction(?:al)? |reib|dreh)?(?:torque|moment)",
 }
 
@@ -62,6 +67,11 @@ TRACK = (
 )
 
 ARM = r"(?:(?:torque|lever|moment|force|friction) )?arm(?: length)?|hebelarm"  # Names of the arm of a torque
+
+BOTH_MOVE = (
+    "write a column 'mean speed [mm/s]', half the sum of the surface speeds, or 'sum of speeds [mm/s]', and one of the "
+    "slide-to-roll ratio, 'SRR [%]', if it is not that of the case"
+)
 
 MADE_SPEED = "sum of speeds [m/s]"  # Header of the column of the speed that was made of others
 
@@ -208,6 +218,8 @@ def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]
                 continue
             if meaning == "run" and table.unit(name):
                 continue  # a stroke in mm
+            if meaning == "rotation" and is_named(name, _BODY) and not has_dimension(table.unit(name) or "-", "rotation"):
+                continue  # what the ball is made of
             if meaning == "entrainment_speed" and is_mean_of_time(table, name, settings):
                 continue
             if not unit and meaning in ("rotation", "torque") or (not unit and normalised_header(name) == "friction"):
@@ -366,6 +378,9 @@ def _speed(table: TextTable, found: dict[str, list[str]], settings: FitSettings)
     surfaces = found.get("surface_speeds", [])
     if len(surfaces) == 2:
         return np.abs(of("surface_speeds") + of("surface_speeds", 1)), f"speed = {' + '.join(map(show, surfaces))}"
+    other = [name for name in found.get("rotation", []) if surfaces and _bodies([name]) - _bodies(surfaces)]
+    if len(surfaces) == 1 and other:
+        raise InputError(_of_two(table, "surface_speeds", surfaces[0], *other))
     if len(surfaces) == 1 and not settings.rolls and "slide_to_roll" not in found:
         return np.abs(of("surface_speeds")), f"speed = {show(surfaces[0])}, with the other surface at rest"
     if "sliding_speed" in found and "slide_to_roll" in found:
@@ -393,12 +408,11 @@ def _speed(table: TextTable, found: dict[str, list[str]], settings: FitSettings)
 
 def _speed_of_rotation(table: TextTable, found: dict[str, list[str]], settings: FitSettings) -> tuple[Array, str]:
     """Return the speed on a track that turns, and how it was obtained."""
-    name = found["rotation"][0]
-    if settings.rolls or "slide_to_roll" in found or len(found["rotation"]) > 1:
-        raise InputError(
-            f"{table.path}: {show(name)} is the rotation of one surface where both move; write a column 'mean speed' or "
-            "'sum of speeds'."
-        )
+    name, *others = found["rotation"]
+    if others:
+        raise InputError(_of_two(table, "rotation", name, *others))
+    if settings.rolls or "slide_to_roll" in found:
+        raise InputError(f"{table.path}: {show(name)} is the rotation of one surface where both move; {BOTH_MOVE}.")
     radius = _length(table, TRACK, settings.track_radius)
     if radius is None:
         raise InputError(
@@ -409,6 +423,20 @@ def _speed_of_rotation(table: TextTable, found: dict[str, list[str]], settings: 
     lengths, origin = radius
     said = f"speed = {show(name)} x the radius of the track, {origin}"
     return numbers(table, name, "rotation", settings) * lengths, said
+
+
+def _of_two(table: TextTable, meaning: str, *names: str) -> str:
+    """Return the sentence that refuses speeds of two surfaces of which no sum is known."""
+    return (
+        f"{table.path}: {listed(map(show, names))} may be of two surfaces; where one is at rest, say that of the other, as in "
+        f"{meaning} = {show(names[0])} in [fit.columns]; where both move, {BOTH_MOVE}."
+    )
+
+
+def _bodies(names: list[str]) -> set[str]:
+    """Return the bodies that headers name."""
+    words = (normalised_header(name).replace("disk", "disc") for name in names)
+    return {found[0].strip() for each in words if (found := re.search(rf"\b{_BODY}", each))}
 
 
 def _texts(values: Array) -> list[str]:
