@@ -23,6 +23,7 @@ def case(tmp_path):
     """Return a function that writes a case under a law and returns its path."""
     (tmp_path / "law.csv").write_text(ROWS)
     (tmp_path / "bad.csv").write_text("wavenumber [1/m], density [m^4]\n1e3, 1e-20\n2e3, 1e-21\n1e3, 1e-22\n")
+    (tmp_path / "lengths.csv").write_text("separation [um], pressure [kPa]\n0, 162\n0.5, 64.8\n1, 24.3\n2, 3.24\n")
     (tmp_path / "si.csv").write_text("gap [um], pressure [kPa]\n0, 162\n0.5, 64.8\n1, 24.3\n2, 3.24\n4, 0.0486\n")
 
     def make(law, changes=None, **tables):
@@ -47,10 +48,13 @@ def test_persson_and_its_coefficients_come_from_the_surface(case):
 def test_a_measured_spectrum_is_read_beside_its_case(case, tmp_path):
     spectrum = sb.surfaces.SelfAffine(h_rms=1e-6, q0=2e4, q1=2e7, hurst=0.8).spectrum
     rows = zip(spectrum.wavenumber * 1e-3, spectrum.density * 1e12, strict=True)
-    (tmp_path / "C.csv").write_text("wavenumber [1/mm]; density [mm^4]\n" + "\n".join(f"{q:.17g}; {c:.17g}" for q, c in rows))
-    found = sb.load_case(case("persson", surface={"spectrum": '"C.csv"', "gamma": "0.5"})).contact.law
+    numbers = "\n".join(f"{q:.17g}; {c:.17g}" for q, c in rows)
     expected = sb.surfaces.persson_law(spectrum, 0.5)
-    assert (found.alpha, found.beta, found.rms_slope) == pytest.approx((expected.alpha, expected.beta, expected.rms_slope))
+    for header in ("wavenumber; density", "q; C", "q; C(q)", "Wave number; PSD", "q; Power spectral density"):
+        wavenumber, density = header.split("; ")
+        (tmp_path / "C.csv").write_text(f"{wavenumber} [1/mm]; {density} [mm^4]\n{numbers}")
+        found = sb.load_case(case("persson", surface={"spectrum": '"C.csv"', "gamma": "0.5"})).contact.law
+        assert (found.alpha, found.beta, found.rms_slope) == pytest.approx((expected.alpha, expected.beta, expected.rms_slope))
 
 
 def test_an_exponential_law_takes_its_coefficients_from_the_surface_and_knows_its_area(case):
@@ -107,6 +111,12 @@ WRONG = [
     ("greenwood-tripp", {"beta": None}, {}, "[contact] beta is missing; add"),
     ("table", {}, {}, "the table [table] is missing, which law = 'table' needs; give file there."),
     ("table", {}, {"table": {"file": '"none.csv"'}}, "none.csv cannot be read"),
+    (
+        "table",
+        {},
+        {"table": {"file": '"lengths.csv"'}},
+        "lengths.csv: separation and pressure have no units, those of the law; call a length 'gap'",
+    ),
     ("table", {}, {"table": {"file": "3"}}, "[table] file = 3 must be text in quotes"),
     ("table", {}, {"table": {}}, "[table] file is missing; add the name of a CSV file"),
     ("table", {}, {"table": {"file": '"law.csv"', "pressure": "[1]"}}, "[table] file = 'law.csv' and pressure are both given"),

@@ -54,7 +54,13 @@ def test_values_that_allow_no_law_are_refused(subtests):
     for name, rate, viscosity, sentence in (
         ("few", RATE[:4], RATE[:4], "4 different rates; a law needs 5"),
         ("thickens", RATE, 1 + RATE, "thicken under shear are not modelled"),
-        ("zero", RATE, 0 * RATE, "viscosity holds 0"),
+        ("zero", RATE, 0 * RATE, "viscosity holds 0, value 1 of 25"),
+        (
+            "direction",
+            np.where(RATE > 900, -RATE, RATE),
+            RATE,
+            "rate holds -1000, value 25 of 25; .*the direction",
+        ),
         ("nan", RATE, np.full(25, np.nan), "viscosity holds nan"),
         ("shapes", RATE, RATE[:5], "as many numbers"),
         ("text", RATE, "water", "arrays of numbers"),
@@ -104,6 +110,23 @@ def test_a_file_of_a_rheometer_is_the_fluid_of_a_case(tmp_path, capsys):
     case.write_text(CASE)
     with pytest.raises(sb.InputError, match="has no unit"):
         sb.load_case(case)
+
+
+def test_a_shear_stress_stands_for_the_viscosity_and_a_kinematic_one_is_refused(tmp_path):
+    path = tmp_path / "gum.csv"
+
+    def written(header, values):
+        path.write_text("\n".join([header, *(f"{x};{y}" for x, y in zip(RATE, values, strict=True))]))
+        return path
+
+    for header in ("shear rate [1/s];shear stress [Pa]", "Scherrate [1/s];Schubspannung [Pa]", "Shear rate [1/s];τ [Pa]"):
+        found = sb.fluids.read_flow_curve(written(header, RATE * measured("cross")))
+        assert found.viscosity == pytest.approx(sb.fluids.flow_curve(RATE, measured("cross")).viscosity, rel=1e-6)
+        assert "Viscosity is shear stress over shear rate." in found.notes
+    with pytest.raises(sb.InputError, match="none of which is the viscosity; name the columns .* or 'shear stress"):
+        sb.fluids.read_flow_curve(written("shear rate [1/s];torque [N m]", RATE))
+    with pytest.raises(sb.InputError, match="^.*gum.csv: .* is a kinematic viscosity; .* multiply the column by the density"):
+        sb.fluids.read_flow_curve(written("shear rate [1/s];viscosity [cSt]", RATE))
 
 
 def test_a_law_shows_its_numbers_with_their_errors_and_is_the_fluid_of_a_contact():

@@ -135,7 +135,8 @@ def _of_spectrum(entries: dict[str, Any], folder: Path) -> tuple[Array, Array]:
         return _lists("surface", entries)
     from stribeck.files.columns import Column, read_columns  # slow to import, and most cases name no file
 
-    columns = {"wavenumber": Column("wave ?number|q", "wavenumber"), "density": Column("density", "spectral density")}
+    density = r"((power )?spectral )?density|psd|c|c\(q\)"
+    columns = {"wavenumber": Column("wave ?number|q", "wavenumber"), "density": Column(density, "spectral density")}
     found, _ = read_columns(
         path, "the first line must be 'wavenumber [1/m], density [m^4]', with the units of the file", columns
     )

@@ -108,7 +108,15 @@ class TableLaw(AsperityLaw):
 
         plain = {"separation": Column("separation", "number"), "pressure": Column("pressure", "number")}
         with_units = {"gap": Column("gap", "length"), "pressure": Column("pressure", "pressure")}
-        found, _ = read_columns(path, HEADERS, plain, with_units)
+        try:
+            found, _ = read_columns(path, HEADERS, plain, with_units)
+        except InputError as problem:
+            if "is text, but a number is expected" not in str(problem):
+                raise
+            raise InputError(
+                f"{path}: separation and pressure have no units, those of the law; call a length 'gap', as in 'gap [um]', and "
+                "give its pressure with a unit too."
+            ) from None
         s, p = found.values()
         if "gap" in found:
             needed = {"alpha": alpha, "beta": beta, "roughness": roughness, "modulus": modulus}

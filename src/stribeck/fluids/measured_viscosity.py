@@ -186,7 +186,7 @@ def read_flow_curve(path: str | os.PathLike[str], *, law: str | None = None) -> 
     ----------
     path : str or path-like
         A text file or spreadsheet with a column of shear rates and one of viscosities, with units, such as
-        ``shear rate [1/s]; viscosity [mPa*s]``; other columns are left out.
+        ``shear rate [1/s]; viscosity [mPa*s]``, or one of shear stresses in their place; other columns are left out.
 
     Raises
     ------
@@ -195,12 +195,24 @@ def read_flow_curve(path: str | os.PathLike[str], *, law: str | None = None) -> 
     """
     from stribeck.files.columns import Column, read_columns  # slow to import, and most fluids have no file
 
-    advice = "name the columns 'shear rate [1/s]' and 'viscosity [mPa*s]', with the units of the file"
-    columns = {
-        "shear rate": Column(r"(shear |strain )?rate( of shear)?|shearrate|gamma dot|gammadot|scherrate|d", "rate"),
-        "viscosity": Column(r"(shear |dynamic |apparent )?viscosity|eta|viskosität", "viscosity"),
-    }
-    columns_of, notes = read_columns(path, advice, columns, gaps=True)
+    advice = "name the columns 'shear rate [1/s]' and 'viscosity [mPa*s]' or 'shear stress [Pa]', with the units of the file"
+    rate = Column(r"(shear |strain )?rate( of shear)?|shearrate|gamma dot|gammadot|scherrate|d", "rate")
+    viscosity = Column(r"(shear |dynamic |apparent )?viscosity|eta|viskosität", "viscosity")
+    stress = Column(r"(shear ?)?stress|tau|τ|schubspannung", "pressure")
+    measured = {"shear rate": rate, "viscosity": viscosity}
+    try:  # a file without either is refused by its viscosity
+        columns_of, notes = read_columns(
+            path, advice, measured, {"shear rate": rate, "shear stress": stress}, measured, gaps=True
+        )
+    except InputError as problem:
+        said, kinematic, _ = str(problem).partition(": give it as kinematic_viscosity")
+        if not kinematic:
+            raise
+        raise InputError(f"{path}: {said}; multiply the column by the density and write mPa*s in its header.") from None
+    if "viscosity" not in columns_of:
+        rates, stresses = columns_of.values()
+        columns_of["viscosity"] = np.divide(stresses, rates, out=np.full(rates.shape, np.nan), where=rates != 0)
+        notes += ("Viscosity is shear stress over shear rate.",)
     try:
         found = flow_curve(columns_of["shear rate"], columns_of["viscosity"], law=law)
     except InputError as problem:
@@ -217,9 +229,11 @@ def _checked(rate: Any, viscosity: Any) -> tuple[Array, Array]:
     if x.ndim != 1 or x.shape != y.shape:
         raise InputError(f"rate of shape {x.shape} and viscosity of shape {y.shape}; give two rows of as many numbers.")
     for name, values in (("rate", x), ("viscosity", y)):
-        wrong = values[~(np.isfinite(values) & (values > 0))]
+        wrong = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
         if wrong.size:
-            raise InputError(f"{name} holds {wrong[0]:g}; all values must be finite and above zero.")
+            which = f"{values[wrong[0]]:g}, value {wrong[0] + 1} of {values.size}"
+            advice = " Leave out rest, and the sign of the direction." if name == "rate" else ""
+            raise InputError(f"{name} holds {which}; all values must be finite and above zero.{advice}")
     if np.unique(x).size < MIN_VALUES:
         raise InputError(f"viscosity at {np.unique(x).size} different rates; a law needs {MIN_VALUES} or more.")
     order = np.argsort(x)

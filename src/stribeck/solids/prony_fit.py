@@ -301,10 +301,12 @@ def _checked(frequency: Any, storage: Any, loss: Any) -> tuple[Array, Array]:
         shapes = ", ".join(str(each.shape) for each in moduli)
         raise InputError(f"frequency of shape {omega.shape} and moduli of shape {shapes}; give three rows of as many numbers.")
     for name, values in zip(("frequency", "storage modulus", "loss modulus"), (omega, *moduli), strict=True):
-        wrong = values[~(np.isfinite(values) & (values > 0))]
+        wrong = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
         if wrong.size:
-            logarithm = " (a logarithm? give the frequency itself)" if name == "frequency" and wrong[0] <= 0 else ""
-            raise InputError(f"{name} holds {wrong[0]:g}{logarithm}; all values must be finite and above zero.")
+            first = values[wrong[0]]
+            logarithm = " (a logarithm? give the frequency itself)" if name == "frequency" and first <= 0 else ""
+            which = f"value {wrong[0] + 1} of {values.size}"
+            raise InputError(f"{name} holds {first:g}, {which}{logarithm}; all values must be finite and above zero.")
     if np.unique(omega).size < MIN_VALUES:
         raise InputError(f"moduli at {np.unique(omega).size} different frequencies; a series needs {MIN_VALUES} or more.")
     order = np.argsort(omega, kind="stable")
