@@ -80,7 +80,7 @@ def test_intervals_of_loops_cover_the_truth(case, tmp_path):
 def test_a_shear_stress_comes_out_of_a_loop_in_the_place_of_a_coefficient(tmp_path):
     seal = sb.load_case("examples/rod_seal.toml").contact.replace(shear_stress="0.2 MPa")
     motion = sb.motions.Sine(20e-3, 0.5)
-    path = loop_of(tmp_path / "loop.csv", seal)
+    path = loop_of(tmp_path / "loop.csv", seal, motion=motion)
     found = sb.bench.fit_loop(path, seal.replace(shear_stress="0.3 MPa"), motion, free=["shear_stress"], steps=24)
     low, high = found["shear_stress"].interval_95
     assert low < 0.2e6 < high < 1.3 * low
