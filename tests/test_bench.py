@@ -262,6 +262,20 @@ def test_what_is_no_series_is_refused_with_what_to_do(subtests, written):
     assert "per_decade" in refusal(EXAMPLE, per_decade=0)
 
 
+def test_overflows_and_codes_of_missing_values_are_no_friction(written, subtests):
+    rows = stepped(np.random.default_rng(4), speeds=SPEEDS[::3], n=40, ways=(1,), zero=0, drift=0)
+    for column, code in ((3, 9.99e37), (3, 99999), (3, 25), (3, -9999), (2, 9.99e37), (2, 99999)):
+        with subtests.test(column=column, code=code):
+            coded = rows.copy()
+            coded[::13, column] = code
+            found = sb.bench.read(written(text_of(coded)))
+            assert_holds(found)
+            assert note_of(found, "10 rows with ") and note_of(found, "left out: 2, 15, 28,") and len(found.row) == 110
+    coded = rows.copy()
+    coded[13, 1] = 9.99e37
+    assert "has '9.99e+37' in row 15, which programs write where a value is missing" in refusal(written(text_of(coded)))
+
+
 def ball_on_disc(rng):
     """Return the text of a rig with two drives: a header above each step, rolling speed and slide-to-roll ratio."""
     lines = ["Test data file", "Disc track radius:\t20.7", ""]

@@ -21,7 +21,7 @@ from stribeck.fits.columns import columns_of, has_column, known_name, with_error
 from stribeck.fits.repeats import FEWEST, errors_of_means
 from stribeck.fits.rig import MADE_FRICTION, column_of, measured, prepared, temperatures
 from stribeck.fits.stated import inputs_said
-from stribeck.fits.strokes import without_codes
+from stribeck.fits.strokes import emptied, without_codes, without_codes_of_forces
 from stribeck.fits.values import LARGEST_FRICTION, checked, numbers
 from stribeck.quantities.formats import format_error, format_si
 from stribeck.quantities.units import InputError, show
@@ -69,6 +69,8 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
     """Return the series of a file; refuse one that has none in a sentence."""
     asked, settings = settings, replace(settings, geometry="point")  # a rig measures forces
     table = with_errors_named(read_table(path, settings.header_row, knows=known_name, sheet=settings.sheet))
+    forces = (column_of(table, meaning, settings) for meaning in ("normal_force", "friction_force", "torque"))
+    table = without_codes_of_forces(table, list(filter(None, forces)))
     written = table.header
     table, zero = _zero_of_force(table, settings)
     own, load = settings, measured(table, "normal_force", settings)
@@ -92,6 +94,7 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
     speed, friction = (
         numbers(table, name, meaning, settings) for name, meaning in ((speed_name, "speed"), (friction_name, "friction"))
     )
+    table, friction = _plausible(table, friction_name, friction)
     stated = numbers(table, columns["error"][0], "error", settings) if "error" in columns else None
     time, timed, time_note = _time(table, table.header.index(run) if run else None)
     warm = temperatures(table)
@@ -106,11 +109,6 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
     if not there.all():
         missing = [number for number, kept in zip(table.numbers, there, strict=True) if not kept]
         notes.append(f"{len(missing)} row{'s' * (len(missing) > 1)} without a value left out: {rows_listed(missing)}.")
-    if np.median(np.abs(friction[there])) > LARGEST_FRICTION:
-        raise InputError(
-            f"{table.path}: column {show(friction_name)}: a friction coefficient of {np.median(np.abs(friction[there])):.3g} "
-            'is not plausible; if it is in percent, write [%] in the header or friction = "%" in [fit.units].'
-        )
     curve, curves = _curves(table, columns, settings)
     labels = table.column(run) if run else ()
     kept = np.flatnonzero(there)
@@ -136,6 +134,20 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
         taken="; ".join([*made, *parts, *of_case]),
         said=said,
     )
+
+
+def _plausible(table: TextTable, name: str, friction: Array) -> tuple[TextTable, Array]:
+    """Return the table and its friction without what no friction is, such as an overflow; refuse where most rows are so."""
+    out = np.abs(friction) > LARGEST_FRICTION
+    if not out.any():
+        return table, friction
+    if 2 * out.sum() > np.isfinite(friction).sum():
+        raise InputError(
+            f"{table.path}: column {show(name)}: a friction coefficient of {np.nanmedian(np.abs(friction)):.3g} "
+            'is not plausible; if it is in percent, write [%] in the header or friction = "%" in [fit.units].'
+        )
+    which = f"with a friction coefficient above {LARGEST_FRICTION:g} in size, which is none (an overflow, or percent),"
+    return emptied(table, name, out, which), np.where(out, np.nan, friction)
 
 
 def _said(table: TextTable, asked: FitSettings, name: str, columns: list[str]) -> tuple[list[str], dict[str, float]]:

@@ -12,17 +12,16 @@ from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import rows_listed
 from stribeck.files.text_table import TextTable
 from stribeck.quantities.units import InputError, show
+from stribeck.surfaces.text import MAX_NUMBER, MISSING_CODES
 
-__all__ = ["without_codes", "without_stops"]
+__all__ = ["emptied", "without_codes", "without_codes_of_forces", "without_stops"]
 
 REST_SPEED = 1e-9  # Speed over the largest of the file below which it is zero but for rounding
-
-CODES = (-999.0, -9999.0, -99999.0)  # Numbers that programs write where there is none
 
 
 def without_codes(table: TextTable, abscissa: str, friction: Sequence[str]) -> TextTable:
     """Return the table with empty cells for friction that programs write as missing; refuse a speed like that."""
-    coded = np.isin(table.values(abscissa), CODES)
+    coded = _are_codes(table.values(abscissa))
     if coded.any():
         code = table.column(abscissa)[int(np.flatnonzero(coded)[0])]
         raise InputError(
@@ -30,10 +29,24 @@ def without_codes(table: TextTable, abscissa: str, friction: Sequence[str]) -> T
             "where a value is missing; leave such cells empty."
         )
     for name in friction:
-        coded = np.isin(table.values(name), CODES)
-        if coded.any():
-            table = _emptied(table, name, coded)
+        table = _without(table, name, _are_codes(table.values(name)))
     return table
+
+
+def without_codes_of_forces(table: TextTable, names: Sequence[str]) -> TextTable:
+    """Return the table with empty cells for forces that programs write as missing or as beyond the range of a sensor."""
+    for name in names:
+        values = table.values(name)
+        coded = _are_codes(values) | np.isin(values, list(MISSING_CODES))
+        rest = values[~coded & ~np.isnan(values)]
+        # A force may be 999 mN; a code is more than twice any other.
+        table = _without(table, name, coded & (np.abs(values) > 2 * np.max(np.abs(rest), initial=0.0)))
+    return table
+
+
+def _are_codes(values: Array) -> Flags:
+    """Return which numbers stand for none, whatever the others are."""
+    return np.asarray(np.isin(values, [-size for size in MISSING_CODES]) | (np.abs(values) >= MAX_NUMBER))
 
 
 def without_stops(table: TextTable, abscissa: str, friction: Sequence[str], settings: FitSettings) -> TextTable:
@@ -96,13 +109,19 @@ def _moving(table: TextTable, speeds: Array, rest: Flags, frictions: list[Array]
     )
 
 
-def _emptied(table: TextTable, name: str, coded: Flags) -> TextTable:
-    """Return the table with empty cells in place of codes of missing values, which a note counts."""
-    at, count = table.header.index(name), int(coded.sum())
+def _without(table: TextTable, name: str, coded: Flags) -> TextTable:
+    """Return the table with empty cells in place of codes of missing values."""
+    if not coded.any():
+        return table
     code = table.column(name)[int(np.flatnonzero(coded)[0])]
-    rows = tuple((*row[:at], "", *row[at + 1 :]) if out else row for row, out in zip(table.rows, coded, strict=True))
-    which = f"with {show(code)} in {show(name)}, a missing value"
-    note = f"{count} row{'s' * (count > 1)} {which}, left out: {_listed(table, coded)}."
+    return emptied(table, name, coded, f"with {show(code)} in {show(name)}, a missing value,")
+
+
+def emptied(table: TextTable, name: str, out: Flags, which: str) -> TextTable:
+    """Return the table with some empty cells, which a note counts and says why."""
+    at, count = table.header.index(name), int(out.sum())
+    rows = tuple((*row[:at], "", *row[at + 1 :]) if each else row for row, each in zip(table.rows, out, strict=True))
+    note = f"{count} row{'s' * (count > 1)} {which} left out: {_listed(table, out)}."
     return replace(table, rows=rows, notes=(*table.notes, note))
 
 
