@@ -46,6 +46,31 @@ def test_boundary_friction_comes_out_of_a_loop_over_position(case, tmp_path):
     assert axes.get_xlabel() == "position (mm)"
 
 
+def test_a_zero_of_the_force_that_is_off_is_found_with_the_inputs(case, tmp_path):
+    path = loop_of(tmp_path / "loop.csv", sb.load_case(case).contact.replace(boundary_friction=0.5), "time [s]")
+    (plain,) = sb.bench.fit_loop(path, case, free=["boundary_friction"]).inputs
+    head, *rows = path.read_text().splitlines()
+    shifted = [f"{x},{float(friction) + 0.05:.7g}" for x, friction in (row.split(",") for row in rows)]
+    path.write_text("\n".join([head, *shifted]))
+    found = sb.bench.fit_loop(path, case, free=["boundary_friction"])
+    assert any("the zero of the force is off by 0.05 ± 0.000" in note for note in found.notes)
+    assert found["boundary_friction"].interval_95 == pytest.approx(plain.interval_95, rel=0.02)
+
+
+def test_a_loop_that_does_not_determine_its_inputs_says_so(capsys, case, tmp_path):
+    path = loop_of(tmp_path / "loop.csv", sb.load_case(case).contact, "time")
+    head, *rows = path.read_text().splitlines()
+    later = [f"{float(time) + 0.125:.7g},{friction}" for time, friction in (row.split(",") for row in rows)]
+    path.write_text("\n".join([head, *later]))  # a quarter of a cycle
+    answer = call(capsys, "loop", path, case, "--json")
+    found = json.loads(answer.out)
+    assert {name for each in found["undetermined"] for name in each["names"]} == {"boundary_friction", "roughness"}
+    for each in found["inputs"]:
+        assert each["interval_95"] == [0, None]  # open
+    assert any("'time' was read in seconds, as its header has no unit" in note for note in found["notes"])
+    assert any("rows friction has the sign of the other way" in note for note in found["notes"])
+
+
 @pytest.mark.slow
 def test_boundary_friction_and_roughness_come_out_of_a_loop_over_time(capsys, case, tmp_path):
     contact = sb.load_case(case).contact

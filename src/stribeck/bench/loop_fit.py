@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -15,15 +15,19 @@ from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.cases.reading import load_case
 from stribeck.contacts.geometries import LineContact
+from stribeck.files.cells import is_named
 from stribeck.files.columns import Column, read_columns
 from stribeck.files.results import Exported, Labelled
+from stribeck.files.table_reading import read_table
 from stribeck.files.writing import PathLike, path_of
+from stribeck.fits.diagnosis import WIDEST, Unidentifiable, undetermined
 from stribeck.fits.fit import names_to_fit
 from stribeck.fits.free_inputs import FreeInput, free_inputs
+from stribeck.fits.intervals import LEVELS, covariance_of
 from stribeck.fits.least_squares import Minimum, Objective, settle
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.model import Prediction
-from stribeck.fits.repeats import memory
+from stribeck.fits.repeats import CLEAR, memory
 from stribeck.fits.result import FitOutcome, FittedInput, WithFittedInputs, unit_of
 from stribeck.motions.motion import Motion
 from stribeck.quantities.formats import format_percent
@@ -68,6 +72,11 @@ def read_loop(path: PathLike) -> Loop:
     [(over, values)] = found.items()
     if not (np.any(friction > 0) and np.any(friction < 0)):
         raise InputError(f"{path}: friction has one sign; a loop has friction of the way back below zero.")
+    table = read_table(Path(path), knows=lambda name: is_named(name, FRICTION.pattern))
+    [header] = OVER[over].names_in(table)
+    if not table.unit(header):
+        unit = "seconds" if over == "time" else "metres"
+        notes = (*notes, f"{show(header)} was read in {unit}, as its header has no unit.")
     return Loop(str(path), over, values, friction, notes)
 
 
@@ -75,7 +84,6 @@ SLOW = 0.1  # Speed over the largest below which a row is left out: at a reversa
 SAME_LENGTH = 0.05  # Part by which the measured path may be longer or shorter than the motion
 STEP = 0.01  # Change of the logarithm of an input for its derivative; with less, the mesh of a stroke makes noise of it
 STEPS = 120  # Steps of a cycle, unless the case says otherwise
-LEVELS = (0.682689492137086, 0.95)  # Probabilities of the two intervals
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -89,11 +97,12 @@ class LoopFit(WithFittedInputs, Exported, Told, ByValue):
     stroke: Annotated[Stroke, "the stroke with the fitted inputs"] = field(repr=False)
     over: Annotated[str, "what friction was measured over, 'position' or 'time'"]
     values: Annotated[Array, "position or time of the rows that were used", "m or s"]
-    measured: Annotated[Array, "measured friction coefficient", "1"]
+    measured: Annotated[Array, "measured friction coefficient, less the zero of the force where that is off", "1"]
     friction: Annotated[Array, "fitted friction coefficient", "1"]
     friction_error: Annotated[Array, "error of the latter by steps and mesh", "1"]
     noise: Annotated[float, "standard deviation of the residuals", "1"]
     correlation: Annotated[float, "correlation of neighbouring residuals, which widens the intervals", "1"]
+    undetermined: Annotated[tuple[Unidentifiable, ...], "combinations of inputs that the loop does not determine"] = ()
     notes: Annotated[tuple[str, ...], "what to know before using the numbers"] = ()
 
     def to_dict(self) -> dict[str, Any]:
@@ -105,6 +114,7 @@ class LoopFit(WithFittedInputs, Exported, Told, ByValue):
             "noise": self.noise,
             "correlation": self.correlation,
             "over": self.over,
+            "undetermined": [asdict(each) for each in self.undetermined],
             "notes": list(self.notes),
         }
         return found | {name: getattr(self, name).tolist() for name in ("values", "measured", "friction", "friction_error")}
@@ -118,7 +128,8 @@ class LoopFit(WithFittedInputs, Exported, Told, ByValue):
             ("rows", f"{len(self.measured)}, neighbours correlated by {self.correlation:.2g}"),
             ("error of the stroke", f"{float(self.friction_error.max()):.1g} at most"),
         ]
-        return Card(self.outcome.value, rows, self.notes, table, right=(1, 2))
+        warnings = [f"Warning: {each.message}" for each in self.undetermined]
+        return Card(self.outcome.value, rows, self.notes, table, right=(1, 2), sentences=warnings)
 
     def _labelled(self) -> Labelled:
         unit = "m" if self.over == "position" else "s"
@@ -149,7 +160,8 @@ def fit_loop(
 
     .. math:: \min_\theta \sum_i \left(\mu(x_i; e^\theta) - \mu_i\right)^2
 
-    over the logarithms of the free inputs, with friction of the last cycle of :func:`stribeck.stroke`.
+    over the logarithms of the free inputs, with friction of the last cycle of :func:`stribeck.stroke`.  Where out and back
+    differ in size by more than three standard errors, the zero of the force is off, and is found with the inputs.
 
     Parameters
     ----------
@@ -202,8 +214,10 @@ def fit_loop(
     model = _LoopModel(contact, arguments, free_inputs(contact, of_free, names, settings), loop, on_step)
     if len(model.data) <= 3 * len(model.free):
         raise InputError(f"{loop.path}: {len(model.data)} rows are too few to fit {len(model.free)} inputs.")
-    found = settle(Objective(model, None, None, False, False), np.zeros(len(model.free)))  # type: ignore[arg-type]
-    return _result(model, found)
+    goal = Objective(model, None, None, False, False)  # type: ignore[arg-type]
+    found = settle(goal, np.zeros(len(model.free)))
+    said = model.settle_zero(found)
+    return _result(model, found if said else settle(goal, found.theta), said)
 
 
 def _problem(case: PathLike | Case | LineContact, given: dict[str, Any]) -> tuple[LineContact, FitSettings, dict[str, Any]]:
@@ -240,6 +254,7 @@ class _LoopModel:
         self.motion, self.steps = arguments["motion"], arguments["steps"]
         self.rubs = np.array([each.name == contact.friction_of_asperities.size for each in free])
         self.strokes = 0
+        self.zero_is_free = True  # Whether the zero of the force is fitted with the inputs
         self._known: dict[bytes, tuple[Array, Array, Array, Array]] = {}
         self.phase, sliding = self._phases(loop)
         self.left_out = int((~sliding).sum())
@@ -290,12 +305,15 @@ class _LoopModel:
 
     def at_rows(self, found: Stroke) -> tuple[Array, Array, Array, Array]:
         """Return both parts of friction and their errors at the rows."""
-        last = found.last_cycle
-        time = found.time[last] - found.time[last][0]
         errors = found.errors["friction_asperities"], found.errors["friction_fluid"]
         parts = (found.friction_asperities, found.friction_fluid, *errors)
-        by_asperities, by_fluid, *of_parts = (np.interp(self.phase, time, each[last]) for each in parts)
+        by_asperities, by_fluid, *of_parts = (self.along(found, each) for each in parts)
         return by_asperities, by_fluid, of_parts[0], of_parts[1]
+
+    def along(self, found: Stroke, values: Array) -> Array:
+        """Return what a stroke has at its instants at the rows."""
+        last = found.last_cycle
+        return np.interp(self.phase, found.time[last] - found.time[last][0], values[last])
 
     def predict(self, theta: Array, states: object, at: object = None) -> Prediction:
         """Return the friction of the rows, with its derivatives."""
@@ -308,46 +326,74 @@ class _LoopModel:
                 continue
             beside = self._parts(theta + STEP * np.eye(len(theta))[k])
             columns.append((rubbing * (beside[0] - asperities) + beside[1] - fluid) / STEP)
-        share, friction = np.ones_like(fluid), rubbing * asperities + fluid
-        return Prediction(friction, np.column_stack(columns), share, share, share, rubbing * errors[0] + errors[1])
+        share, friction, jacobian = np.ones_like(fluid), rubbing * asperities + fluid, np.column_stack(columns)
+        if self.zero_is_free:  # the best one of these inputs
+            friction, jacobian = friction + np.mean(self.data.friction - friction), jacobian - jacobian.mean(axis=0)
+        return Prediction(friction, jacobian, share, share, share, rubbing * errors[0] + errors[1])
+
+    def settle_zero(self, at: Minimum) -> str:
+        """Take off the zero of the force, if it is clear, and return what is to be said of it."""
+        misfit = at.prediction.friction - self.data.friction
+        self.zero_is_free = False
+        found = self.predict(at.theta, None)
+        _, correlation = memory([misfit])
+        own = np.ones(len(misfit))  # what the inputs cannot do of a shift of all rows
+        own -= found.jacobian @ np.linalg.lstsq(found.jacobian, own, rcond=None)[0]
+        noise = math.sqrt(float(misfit @ misfit) / max(len(misfit) - len(self.free) - 1, 1))
+        error = noise * math.sqrt((1 + correlation) / (1 - correlation) / max(float(own @ own), 1e-300))
+        zero = float(np.mean(self.data.friction - found.friction))
+        if abs(zero) <= CLEAR * error:
+            return ""
+        self.data = replace(self.data, friction=self.data.friction - zero)
+        return f"Out and back: the zero of the force is off by {zero:.2g} ± {error:.1g} of friction; taken off."
 
 
-def _result(model: _LoopModel, at: Minimum) -> LoopFit:
+def _result(model: _LoopModel, at: Minimum, zero: str) -> LoopFit:
     """Return the fit, with intervals of the covariance widened by the correlation of the residuals."""
     from scipy.stats import t
 
-    misfit = at.prediction.friction - model.data.friction
+    misfit = at.residuals * at.objective.size
     n, p = at.jacobian.shape
     _, correlation = memory([misfit])
     widened = (1 + correlation) / (1 - correlation)
     noise = math.sqrt(float(misfit @ misfit) / max(n - p, 1))
-    J = at.prediction.jacobian
-    rows, _ = at.objective.priors
-    scatter = np.diag(np.linalg.pinv(J.T @ J / (widened * noise**2) + rows.T @ rows))
-    # Time steps err alike from row to row, which is no noise: the inputs follow what half of the steps change.
-    finer = sum(model.at_rows(model.at(at.theta, 2 * model.steps))[:2])
-    moved = np.linalg.pinv(J) @ (at.prediction.friction - finer)
+    # Residuals that are alike say as much as fewer ones.
+    at = replace(at, jacobian=at.jacobian / math.sqrt(widened))
+    covariance, _, _ = covariance_of(at)
+    scatter = np.sqrt(np.diag(covariance))
+    # Time steps err alike from row to row, which is no noise: the inputs follow what half of the steps change, but not along
+    # directions that the loop does not determine.
+    coarse, finer = (sum(model.at_rows(model.at(at.theta, steps))[:2]) for steps in (model.steps, 2 * model.steps))
+    least = 1 / WIDEST / max(float(np.linalg.norm(at.jacobian, 2)), 1e-300)
+    moved = np.linalg.pinv(at.prediction.jacobian, rcond=min(least, 1.0)) @ (coarse - finer)
     low, high = at.objective.bounds
     places = np.clip(at.theta + moved, low, high)
-    errors = np.hypot(np.sqrt(scatter), moved)
+    errors = np.hypot(scatter, moved)
     freedom = max(n / widened - p, 1.0)
+    quantiles = [float(t.ppf(0.5 + level / 2, freedom)) for level in LEVELS]
     inputs = []
     for free, theta, error, bound in zip(model.free, places.tolist(), errors.tolist(), at.at_bound.tolist(), strict=True):
-        narrow, wide = (
-            (free.value(theta - half), free.value(theta + half))
-            for half in (error * float(t.ppf(0.5 + level / 2, freedom)) for level in LEVELS)
-        )
+        narrow, wide = (free.interval(theta, error * each) for each in quantiles)
         unit, dimension = unit_of(free.name, False), model.contact.INPUTS.rows[free.name].dimension
-        stated, value = math.nan if bound else error, free.value(theta)
-        inputs.append(FittedInput(free.name, None, value, unit, free.start, False, stated, narrow, wide, bound, dimension))
-    notes = list(model.data.notes)
+        value = free.value(theta)
+        inputs.append(FittedInput(free.name, None, value, unit, free.start, False, error, narrow, wide, bound, dimension))
+    notes = [*model.data.notes, *filter(None, [zero])]
     if model.left_out:
         notes.append(f"{model.left_out} rows slower than a tenth of the largest speed left out.")
-    if np.any(np.abs(moved) > np.sqrt(scatter)):
+    against = int((model.motion.speed(model.phase) * model.data.friction < 0).sum())
+    if against:
+        notes.append(f"In {against} of {n} rows friction has the sign of the other way: does time begin with the motion?")
+    if np.any(np.abs(moved) > scatter):
         notes.append("Half of the time steps move the inputs by more than the noise does: ask for more steps.")
     outcome = FitOutcome.AT_BOUND if at.at_bound.any() else FitOutcome.CONVERGED if at.ended else FitOutcome.STEP_LIMIT
     found = model.at(places, 2 * model.steps)
     by_asperities, by_fluid, *of_parts = model.at_rows(found)
+    friction, error_of_rows = by_asperities + by_fluid, of_parts[0] + of_parts[1]
+    size = np.abs(by_asperities) + np.abs(by_fluid)
+    shares = (np.abs(by_asperities) / size, np.abs(by_fluid) / size, model.along(found, found.contact_load_share))
+    of_rows = Prediction(size, at.prediction.jacobian, *shares, error_of_rows)
+    with np.errstate(invalid="ignore"):  # nothing may change with any input
+        weak = undetermined(model.free, [each.label for each in inputs], at.jacobian, of_rows)
     return LoopFit(
         tuple(inputs),
         outcome,
@@ -355,9 +401,10 @@ def _result(model: _LoopModel, at: Minimum) -> LoopFit:
         model.data.over,
         model.data.values,
         model.data.friction,
-        by_asperities + by_fluid,
-        of_parts[0] + of_parts[1],
+        friction,
+        error_of_rows,
         noise,
         correlation,
+        weak,
         (*notes, *found.notes),
     )
