@@ -421,6 +421,9 @@ def test_the_time_of_day_is_a_time_over_midnight_too(written, subtests):
         ("Time", lambda s: at(s).strftime("%H:%M:%S.%f")),
         ("Date Time", lambda s: at(s).isoformat()),
         ("Clock", lambda s: at(s).strftime("%I:%M:%S.%f %p")),
+        ("Zeit [hh:mm:ss]", lambda s: at(s).strftime("%H:%M:%S,%f")),
+        ("Datum/Uhrzeit", lambda s: at(s).strftime("%d.%m.%Y %H:%M:%S.%f")),
+        ("Zeitstempel", lambda s: at(s).strftime("%H:%M:%S.%f")),
         ("Timestamp", lambda s: at(s).strftime("%Y-%m-%d %H:%M:%S.%f").replace(".", ",")),
     ):
         with subtests.test(header=header):
@@ -470,10 +473,27 @@ def test_forces_are_taken_for_a_friction_coefficient_that_agrees_within_two_per_
 @pytest.mark.quick
 def test_a_time_is_known_by_its_usual_names(written, subtests):
     rows = stepped(np.random.default_rng(4), speeds=SPEEDS[::3], n=40)[:, [0, 1, 2, 3]]
-    for name, unit in (("Zeit", "s"), ("Test time", "min"), ("Measuring time", "s"), ("Relative time", "s"), ("t", "h")):
+    for name, unit in (
+        ("Zeit", "s"),
+        ("Messzeit", "min"),
+        ("Test time", "min"),
+        ("Measuring time", "s"),
+        ("Relative time", "s"),
+        ("t", "h"),
+    ):
         with subtests.test(name=name):
             found = sb.bench.read(written(text_of(rows, f"{name} [{unit}];Speed [mm/s];Fz [N];Fx [N]")))
             assert found.time == pytest.approx(rows[:, 0] * {"s": 1, "min": 60, "h": 3600}[unit])
+    for name, cell, why in (
+        ("Time", "noon", "'Time' was not read as time, as 'noon' is neither a number nor a clock that goes on"),
+        ("Time [N]", "1", "'Time [N]' was not read as time, as 'N' is no unit of time"),
+        ("Dwell time [s]", "1", "'Dwell time [s]' was not read as time, as its name is not known as one"),
+        ("Time [s]", "12", "'Time [s]' is the same in all rows"),
+    ):
+        with subtests.test(name=name):
+            head, *lines = text_of(rows[:, 1:], "Speed [mm/s];Fz [N];Fx [N]").splitlines()
+            found = sb.bench.read(written("\n".join([f"{name};{head}", *(f"{cell};{line}" for line in lines)])))
+            assert found.notes[0] == f"{why}; rows count as evenly spaced."
     same = text_of(np.column_stack([np.full(len(rows), 12.0), rows]), "Time [s];Test time [s];Speed [mm/s];Fz [N];Fx [N]")
     assert sb.bench.read(written(same)).time == pytest.approx(rows[:, 0])  # the length of a step, alike in all rows
 

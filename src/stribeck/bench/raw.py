@@ -31,8 +31,12 @@ __all__ = ["Raw", "read_raw"]
 # Headers of a time
 TIME = (
     r"(?:(?:elapsed|test|total|run|running|measuring|cycle|relative) )?(?:time|zeit)|time ?stamp|t"
-    r"|date(?: ?time)?|clock|uhrzeit|datum"
+    r"|(?:mess|lauf|test|prüf|versuchs)zeit|zeitstempel|(?:date|datum)(?: ?(?:time|zeit|uhrzeit))?|clock|uhrzeit"
 )
+
+_LIKE_TIME = re.compile("time|zeit|date|clock|datum", re.IGNORECASE)
+
+_DATE = re.compile(r"(?:(?P<year>\d{4})-(?P<month>\d\d)-(?P<day>\d\d)|(?P<of>\d\d?)\.(?P<in>\d\d?)\.(?P<at>\d{4}))[T ]")
 
 _CLOCK = re.compile(r"(?:.*[T ])?(\d{1,3}):(\d\d):(\d\d(?:[.,]\d+)?)(?: ?(AM|PM))?(?:Z|[+-]\d\d:?\d\d)?", re.IGNORECASE)
 
@@ -242,10 +246,15 @@ def _only(table: TextTable, kept: Flags) -> TextTable:
 def _time(table: TextTable, step: int | None) -> tuple[Array, bool, list[str]]:
     """Return the time of each row [s], whether the file has one, and what is to be said; refuse one that runs backwards."""
     rows = np.arange(len(table.rows), dtype=float)
+    unread = []
     for name in filter(None, dict.fromkeys(table.header)):
-        unit = table.unit(name)
-        bare = not unit and re.search("time|zeit|date|clock|datum", name, re.IGNORECASE)
-        if not is_named(name, TIME) or not (bare or has_dimension(unit or "-", "time")):
+        unit = "" if ":" in table.unit(name) else table.unit(name)  # hh:mm:ss is the form of its cells
+        like = _LIKE_TIME.search(name)
+        if not is_named(name, TIME):
+            unread += [f"{show(name)} was not read as time, as its name is not known as one"] if like else []
+            continue
+        if not (has_dimension(unit or "-", "time") or (not unit and like)):
+            unread += [f"{show(name)} was not read as time, as {show(unit)} is no unit of time"] if like else []
             continue
         read = table.values(name)
         there = bool(np.isfinite(read).any())
@@ -253,17 +262,21 @@ def _time(table: TextTable, step: int | None) -> tuple[Array, bool, list[str]]:
         if stamps is not None:
             return _going_on(table, name, stamps, step), True, [f"{show(name)} was read as the time of day."]
         if not there:
+            cell = next(filter(None, table.column(name)), "")
+            unread.append(f"{show(name)} was not read as time, as {show(cell)} is neither a number nor a clock that goes on")
             continue
         time = read * (si_factor(unit, "time", name) if unit else 1.0)
         if np.ptp(time[np.isfinite(time)]) == 0:
-            continue  # the length of a step, the same in all rows
+            unread.append(f"{show(name)} is the same in all rows")  # the length of a step
+            continue
         said = [] if unit else [f"{show(name)} was read in seconds, as its header has no unit."]
         return _going_on(table, name, time, step), True, said
-    return rows, False, ["The file has no time; rows count as evenly spaced."] if len(rows) > FEWEST else []
+    spaced = f"{'; '.join(unread) or 'The file has no time'}; rows count as evenly spaced."
+    return rows, False, [spaced] if len(rows) > FEWEST else []
 
 
 def _stamps(cells: Sequence[str]) -> Array | None:
-    """Return the seconds since the first of times of day, with or without an ISO date; None where cells are none."""
+    """Return the seconds since the first of times of day, with or without a date; None where cells are none."""
     found, first, days, before = [], 0.0, 0.0, -1.0
     for cell in cells:
         clock = _CLOCK.fullmatch(cell.strip())
@@ -272,10 +285,11 @@ def _stamps(cells: Sequence[str]) -> Array | None:
             continue
         hours = int(clock[1]) % 12 + 12 * (clock[4].upper() == "PM") if clock[4] else int(clock[1])
         seconds = 3600.0 * hours + 60 * int(clock[2]) + float(clock[3].replace(",", "."))
-        date = re.match(r"(\d{4})-(\d\d)-(\d\d)[T ]", cell.strip())
+        date = _DATE.match(cell.strip())
         if date is not None:
+            parts = date.group("year", "month", "day") if date["year"] else date.group("at", "in", "of")
             try:
-                day = DAY * datetime.date(*map(int, date.groups())).toordinal()
+                day = DAY * datetime.date(*map(int, parts)).toordinal()
             except ValueError:  # no day of any calendar
                 found.append(math.nan)
                 continue
