@@ -152,7 +152,7 @@ TABLES = (
         "exponential",
         Cavitation.EXIT,
         {"speed": (1e-8, 10.0), "load": (1e-4, 0.5), "relative_roughness": (5e-3, 1.0)},
-        8e-3,
+        3e-3,
         "ball_exit.npz",
         BALL_EXIT,
     ),
