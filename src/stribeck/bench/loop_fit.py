@@ -15,10 +15,8 @@ from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.cases.reading import load_case
 from stribeck.contacts.geometries import LineContact
-from stribeck.files.cells import is_named
 from stribeck.files.columns import Column, read_columns
 from stribeck.files.results import Exported, Labelled
-from stribeck.files.table_reading import read_table
 from stribeck.files.writing import PathLike, path_of
 from stribeck.fits.diagnosis import WIDEST, Unidentifiable, undetermined
 from stribeck.fits.fit import names_to_fit
@@ -72,11 +70,6 @@ def read_loop(path: PathLike) -> Loop:
     [(over, values)] = found.items()
     if not (np.any(friction > 0) and np.any(friction < 0)):
         raise InputError(f"{path}: friction has one sign; a loop has friction of the way back below zero.")
-    table = read_table(Path(path), knows=lambda name: is_named(name, FRICTION.pattern))
-    [header] = OVER[over].names_in(table)
-    if not table.unit(header):
-        unit = "seconds" if over == "time" else "metres"
-        notes = (*notes, f"{show(header)} was read in {unit}, as its header has no unit.")
     return Loop(str(path), over, values, friction, notes)
 
 

@@ -21,6 +21,8 @@ __all__ = ["BARE", "Column", "has_dimension", "read_columns", "si_factor", "stat
 
 BARE = {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01, "percent": 0.01, "‰": 0.001}  # Units of a bare number
 
+IN_WORDS = {"time": "seconds", "length": "metres"}  # SI units of columns that may leave theirs out
+
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
 
 _MASS = re.compile(r"(?:[mk]?g|gram|gr)f?")
@@ -102,7 +104,7 @@ def read_columns(
         rows = rows_listed(sorted(table.unread))
         raise InputError(f"{file}: no numbers of the table above in row {rows}; take text out, or begin its rows with #.")
     wanted = next((choice for choice in choices if all(each.names_in(table) for each in choice.values())), choices[-1])
-    found = {}
+    found, taken, bare = {}, list[str](), list[str]()
     for name, column in wanted.items():
         headers = column.names_in(table)
         unit = table.unit(headers[0]) if headers else ""
@@ -112,9 +114,12 @@ def read_columns(
             said = f"in which {show(headers[0])} has no unit" if without else f"{which} the {name}"
             raise InputError(f"{file}: the header is {show(', '.join(table.header))}, {said}; {advice}.")
         found[name] = table.numbers_of(headers[0], functools.partial(column.factor, name), gaps=gaps)
+        taken.append(headers[0])
+        if column.is_bare and not unit:
+            bare.append(f"{show(headers[0])} was read in {IN_WORDS[column.dimension]}, as its header has no unit.")
     whole = ~np.isnan(list(found.values())).any(axis=0)
     empty = rows_listed(np.array(table.numbers)[~whole])
-    notes = [*table.notes, *table.thousands_noted([column.names_in(table)[0] for column in wanted.values()])]
+    notes = [*table.notes, *table.thousands_noted(taken), *bare]
     notes += [f"Rows with an empty cell left out: {empty}."] if empty else []
     return {name: values[whole] for name, values in found.items()}, tuple(notes)
 
