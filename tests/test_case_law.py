@@ -23,7 +23,7 @@ def case(tmp_path):
     """Return a function that writes a case under a law and returns its path."""
     (tmp_path / "law.csv").write_text(ROWS)
     (tmp_path / "bad.csv").write_text("wavenumber [1/m], density [m^4]\n1e3, 1e-20\n2e3, 1e-21\n1e3, 1e-22\n")
-    (tmp_path / "lengths.csv").write_text("separation [um], pressure [kPa]\n0, 162\n0.5, 64.8\n1, 24.3\n2, 3.24\n")
+    (tmp_path / "half.csv").write_text("separation [um], pressure\n0, 162\n0.5, 64.8\n1, 24.3\n2, 3.24\n")
     (tmp_path / "si.csv").write_text("gap [um], pressure [kPa]\n0, 162\n0.5, 64.8\n1, 24.3\n2, 3.24\n4, 0.0486\n")
 
     def make(law, changes=None, **tables):
@@ -103,7 +103,12 @@ WRONG = [
     ("persson", {}, {"surface": {"shape_only": '"yes"'}}, "[surface] shape_only = 'yes' must be true or false"),
     ("persson", {}, {"surface": {"shape_only": "true"}}, "[contact] roughness is missing"),
     ("persson", {}, {"alone": {"spectrum": '"law.csv"'}}, "first line must be 'wavenumber [1/m], density [m^4]'"),
-    ("persson", {}, {"alone": {"spectrum": '"bad.csv"'}}, "row 3 = 1000 is not above the one before it"),
+    (
+        "persson",
+        {},
+        {"alone": {"spectrum": '"bad.csv"'}},
+        "bad.csv: wavenumber in row 4 = 1000 is not above the one before it",
+    ),
     ("persson", {}, {"alone": {"spectrum": "3"}}, "[surface] spectrum = 3 must be text in quotes"),
     ("persson", {}, {"alone": {"wavenumber": "[1.0]"}}, "[surface] density is missing"),
     ("persson", {}, {"asperities": ASPERITIES}, "the table [asperities] is not used by law = 'persson'; it belongs to"),
@@ -114,8 +119,8 @@ WRONG = [
     (
         "table",
         {},
-        {"table": {"file": '"lengths.csv"'}},
-        "lengths.csv: separation and pressure have no units, those of the law; call a length 'gap'",
+        {"table": {"file": '"half.csv"'}},
+        "half.csv: the header is 'separation [um], pressure', in which 'pressure' has no unit",
     ),
     ("table", {}, {"table": {"file": "3"}}, "[table] file = 3 must be text in quotes"),
     ("table", {}, {"table": {}}, "[table] file is missing; add the name of a CSV file"),

@@ -125,8 +125,16 @@ def test_a_shear_stress_stands_for_the_viscosity_and_a_kinematic_one_is_refused(
         assert "Viscosity is shear stress over shear rate." in found.notes
     with pytest.raises(sb.InputError, match="none of which is the viscosity; name the columns .* or 'shear stress"):
         sb.fluids.read_flow_curve(written("shear rate [1/s];torque [N m]", RATE))
-    with pytest.raises(sb.InputError, match="^.*gum.csv: .* is a kinematic viscosity; .* multiply the column by the density"):
+    with pytest.raises(sb.InputError, match="gum.csv: its viscosity is a kinematic one; multiply the column by the density"):
         sb.fluids.read_flow_curve(written("shear rate [1/s];viscosity [cSt]", RATE))
+    for header, wrong, words in (
+        ("shear rate [1/s];viscosity [Pa s]", "0;1", "rate holds 0, row 5; all values must be .* Leave out rest"),
+        ("shear rate [1/s];shear stress [Pa]", "1;-1", "viscosity holds -1, row 5"),
+    ):
+        lines = written(header, measured("cross")).read_text().splitlines()
+        path.write_text("\n".join(["Gum", *lines[:2], ";", wrong, *lines[2:]]))
+        with pytest.raises(sb.InputError, match=f"gum.csv: {words}"):
+            sb.fluids.read_flow_curve(path)
 
 
 def test_a_law_shows_its_numbers_with_their_errors_and_is_the_fluid_of_a_contact():

@@ -350,7 +350,7 @@ def test_a_file_that_is_no_table_is_refused_with_its_line(subtests, tmp_path):
         ("separation, pressure\n0, 1\n1, 0.5, 3\n", "row 3 has 3 cells where the header has 2; use one separator"),
         ("gap [um], pressure [m]\n0, 1\n", "^pressure = '1 m' is a length"),
         ("gap [um], pressure\n0, 1\n", "the header is 'gap \\[um\\], pressure'"),
-        ("separation, pressure\n0, 1\n1, 2\n2, 0.2\n3, 0.1\n", "row 2 of the contact law's table: pressure 2 must be below"),
+        ("separation, pressure\n0, 1\n1, 2\n2, 0.2\n3, 0.1\n", "law.csv: row 3: pressure 2 must be below"),
     ]:
         with subtests.test(text=text, sentence=sentence):
             (tmp_path / "law.csv").write_text(text)
@@ -360,11 +360,12 @@ def test_a_file_that_is_no_table_is_refused_with_its_line(subtests, tmp_path):
 
 def test_a_file_with_units_and_decimal_commas_is_the_law_without(tmp_path):
     (tmp_path / "plain.csv").write_text("# measured\nseparation, pressure\n0, 1\n1, 0.4\n2, 0.15\n4, 0.02\n")
-    (tmp_path / "units.csv").write_text("Gap (um); Pressure (kPa)\n0; 200\n0,5; 80\n1; 30\n2; 4\n")
     plain = TableLaw.read(tmp_path / "plain.csv")
-    units = TableLaw.read(tmp_path / "units.csv", alpha=2.0, beta=0.1, roughness=1e-6, modulus=2e6)
-    assert units.separation == pytest.approx(plain.separation, abs=1e-14)
-    assert units.pressure == pytest.approx(plain.pressure, rel=1e-14)
+    for name in ("Gap", "Separation"):
+        (tmp_path / "units.csv").write_text(f"{name} (um); Pressure (kPa)\n0; 200\n0,5; 80\n1; 30\n2; 4\n")
+        units = TableLaw.read(tmp_path / "units.csv", alpha=2.0, beta=0.1, roughness=1e-6, modulus=2e6)
+        assert units.separation == pytest.approx(plain.separation, abs=1e-14)
+        assert units.pressure == pytest.approx(plain.pressure, rel=1e-14)
     with pytest.raises(sb.InputError, match="alpha and modulus of the contact must be given"):
         TableLaw.read(tmp_path / "units.csv", beta=0.1, roughness=1e-6)
     with pytest.raises(sb.InputError, match="cannot be read"):

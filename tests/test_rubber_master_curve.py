@@ -157,6 +157,10 @@ def test_impossible_curves_are_refused(subtests, tmp_path):
         sb.solids.from_master_curve(write(tmp_path / "c.csv", "frequency [rpm];E' [MPa];E'' [MPa]"))
     with pytest.raises(sb.InputError, match="poisson_ratio"):
         sb.solids.fit_prony(OMEGA, storage, loss, poisson_ratio=0.7)
+    text = write(tmp_path / "d.csv").read_text()
+    (tmp_path / "d.csv").write_text(f"A rubber\n{text}1;2;-3\n")
+    with pytest.raises(sb.InputError, match="d.csv: loss modulus holds -3e\\+06, row 34; all values must be"):
+        sb.solids.from_master_curve(tmp_path / "d.csv")
 
 
 def test_a_series_shows_its_terms_and_its_dataset_has_the_measured_values_beside_it():

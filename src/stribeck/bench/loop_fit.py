@@ -65,12 +65,11 @@ def read_loop(path: PathLike) -> Loop:
     path = path_of(path)
     if not Path(path).is_file():
         raise InputError(f"{path}: there is no such file.")
-    found, notes = read_columns(path, ADVICE, *({name: over, "friction": FRICTION} for name, over in OVER.items()), gaps=True)
-    friction = found.pop("friction")
-    [(over, values)] = found.items()
+    found = read_columns(path, ADVICE, *({name: over, "friction": FRICTION} for name, over in OVER.items()), gaps=True)
+    (over, values), (_, friction) = found.in_si.items()
     if not (np.any(friction > 0) and np.any(friction < 0)):
         raise InputError(f"{path}: friction has one sign; a loop has friction of the way back below zero.")
-    return Loop(str(path), over, values, friction, notes)
+    return Loop(str(path), over, values, friction, found.notes)
 
 
 SLOW = 0.1  # Speed over the largest below which a row is left out: at a reversal the rig gives way before the surfaces slide

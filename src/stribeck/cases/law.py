@@ -101,9 +101,9 @@ def self_contained(law: Law, tables: dict[str, Any], folder: Path, shape: Asperi
         return {}
     entries = {key: value for key, value in tables["surface"].items() if key != "shape_only"}
     if "spectrum" in entries:
-        wavenumber, density = _of_spectrum(entries, folder)
+        found = _of_spectrum(entries, folder)
         del entries["spectrum"]
-        entries |= {"wavenumber": wavenumber.tolist(), "density": density.tolist()}
+        entries |= {"wavenumber": found.wavenumber.tolist(), "density": found.density.tolist()}
     return {"surface": entries}
 
 
@@ -116,8 +116,7 @@ def _of_surface(law: Law, entries: dict[str, Any], contact: dict[str, Any], fold
         if extra:
             source = "the file of the spectrum" if "spectrum" in entries else "the spectrum"
             raise InputError(f"{extra[0]} = {show(entries[extra[0]])} follows from {source}; remove one of them.")
-        wavenumber, density = _of_spectrum(entries, folder)
-        full = _law_of(Spectrum(wavenumber, density), entries.get("gamma", GAMMA))
+        full = _law_of(_of_spectrum(entries, folder), entries.get("gamma", GAMMA))
     else:
         gamma = GAMMA_INPUT.checked(entries.pop("gamma", GAMMA))
         full = _law_of(SelfAffine(**read_inputs(entries, SURFACE).checked()), gamma)
@@ -128,19 +127,18 @@ def _of_surface(law: Law, entries: dict[str, Any], contact: dict[str, Any], fold
 _law_of = functools.lru_cache(maxsize=16)(persson_law)
 
 
-def _of_spectrum(entries: dict[str, Any], folder: Path) -> tuple[Array, Array]:
-    """Return wave numbers and densities in SI units, from the file that a table names or from its lists."""
+def _of_spectrum(entries: dict[str, Any], folder: Path) -> Spectrum:
+    """Return the spectrum of the file that a table names, or of its lists."""
     path = _file_of("surface", entries, folder)
     if path is None:
-        return _lists("surface", entries)
+        return Spectrum(*_lists("surface", entries))
     from stribeck.files.columns import Column, read_columns  # slow to import, and most cases name no file
 
     density = r"((power )?spectral )?density|psd|c|c\(q\)"
     columns = {"wavenumber": Column("wave ?number|q", "wavenumber"), "density": Column(density, "spectral density")}
-    found, _ = read_columns(
-        path, "the first line must be 'wavenumber [1/m], density [m^4]', with the units of the file", columns
-    )
-    return found["wavenumber"], found["density"]
+    found = read_columns(path, "the first line must be 'wavenumber [1/m], density [m^4]', with the units of the file", columns)
+    with found.named():
+        return Spectrum(**found.in_si)
 
 
 def _of_asperities(law: Law, entries: dict[str, Any], contact: dict[str, Any], folder: Path) -> Made:

@@ -168,7 +168,7 @@ def leak_command(
     if min(speeds) <= 0:
         raise InputError(f"out_speed = {show(out_speed)} and in_speed = {show(in_speed)} must be above zero.")
     columns = {"position": Column(".*", "length"), "pressure": Column(".*", "pressure")}  # by their units
-    x, p = read_columns(pressure, HEADER, columns)[0].values()
+    x, p = read_columns(pressure, HEADER, columns).in_si.values()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", OutOfRangeWarning)  # a note says it
         found = film_of_pressure(x, p, modulus=modulus, viscosity=viscosity, speed=speeds if side == "left" else speeds[::-1])

@@ -27,7 +27,7 @@ from stribeck.quantities.formats import format_si
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import ByValue
 from stribeck.quantities.schema import Input, law
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, RowError, show
 
 __all__ = ["SelfAffine", "Spectrum", "height_of_roughness", "positive", "table_of"]
 
@@ -76,11 +76,12 @@ class Spectrum(ByValue, Described, title="Parameters"):
         if self.wavenumber.size < 2:
             raise InputError("the spectrum has fewer than two points; give at least two, of different wave numbers.")
         if not np.all(np.diff(self.wavenumber) > 0):
-            row = int(np.argmin(np.diff(self.wavenumber) > 0)) + 2
-            raise InputError(
-                f"wavenumber in row {row} = {self.wavenumber[row - 1]:g} is not above the one before it, "
-                f"{self.wavenumber[row - 2]:g}; sort the rows by wave number and keep one for each."
+            i = int(np.argmin(np.diff(self.wavenumber) > 0)) + 1
+            text = (
+                f"wavenumber in {{row}} = {self.wavenumber[i]:g} is not above the one before it, {self.wavenumber[i - 1]:g}; "
+                "sort the rows by wave number and keep one for each."
             )
+            raise RowError(text, i, f"row {i + 1}")
 
     @property
     def lowest(self) -> float:
@@ -316,10 +317,9 @@ def _column(name: str, values: object) -> Array:
         raise InputError(f"{name} of the spectrum has the shape {array.shape}; give a column of numbers.")
     good = np.isfinite(array) & (array > 0)
     if not good.all():
-        row = int(np.argmin(good)) + 1
-        raise InputError(
-            f"{name} in row {row} of the spectrum = {array[row - 1]:g} is not a positive number; "
-            "remove the rows where the spectrum has gaps, or fill them."
-        )
+        i = int(np.argmin(good))
+        advice = "remove the rows where the spectrum has gaps, or fill them"
+        text = f"{name} in {{row}} = {array[i]:g} is not a positive number; {advice}."
+        raise RowError(text, i, f"row {i + 1} of the spectrum")
     array.setflags(write=False)
     return array

@@ -20,7 +20,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.numerics.trace import pointwise
 from stribeck.quantities.lazy import cached_property
-from stribeck.quantities.units import InputError, real_array, show
+from stribeck.quantities.units import InputError, RowError, real_array, show
 
 __all__ = ["TableLaw"]
 
@@ -107,18 +107,10 @@ class TableLaw(AsperityLaw):
         from stribeck.files.columns import Column, read_columns  # slow to import, and most laws have no file
 
         plain = {"separation": Column("separation", "number"), "pressure": Column("pressure", "number")}
-        with_units = {"gap": Column("gap", "length"), "pressure": Column("pressure", "pressure")}
-        try:
-            found, _ = read_columns(path, HEADERS, plain, with_units)
-        except InputError as problem:
-            if "is text, but a number is expected" not in str(problem):
-                raise
-            raise InputError(
-                f"{path}: separation and pressure have no units, those of the law; call a length 'gap', as in 'gap [um]', and "
-                "give its pressure with a unit too."
-            ) from None
-        s, p = found.values()
-        if "gap" in found:
+        with_units = {"gap": Column("gap|separation", "length"), "pressure": Column("pressure", "pressure")}
+        columns = read_columns(path, HEADERS, with_units, plain)
+        s, p = columns.in_si.values()
+        if "gap" in columns.in_si:
             needed = {"alpha": alpha, "beta": beta, "roughness": roughness, "modulus": modulus}
             missing = [name for name, value in needed.items() if not value]
             if missing:
@@ -127,10 +119,8 @@ class TableLaw(AsperityLaw):
                 )
             assert alpha and beta and roughness and modulus
             s, p = s * (alpha / roughness), p / (beta * modulus)
-        try:
+        with columns.named():
             return cls(s, p, title=Path(path).name)
-        except InputError as problem:
-            raise InputError(f"{path}: {problem}") from None
 
     @property
     def name(self) -> str:
@@ -206,15 +196,17 @@ def _check_rows(s: Sequence[float], p: Sequence[float]) -> None:
     if len(s) < MIN_ROWS:
         raise InputError(f"the table of the contact law has {len(s)} rows; at least {MIN_ROWS} are needed.")
     for i in range(len(s)):
-        row = f"row {i + 1} of the contact law's table"
+        problem = ""
         if not (math.isfinite(s[i]) and math.isfinite(p[i])):
-            raise InputError(f"{row}, {s[i]:g} and {p[i]:g}, is not finite; remove or correct it.")
-        if p[i] <= 0:
-            raise InputError(f"{row}: pressure {p[i]:g} must be positive; end the table where contact ends.")
-        if i and s[i] <= s[i - 1]:
-            raise InputError(f"{row}: separation {s[i]:g} must exceed that of the row before, {s[i - 1]:g}.")
-        if i and p[i] >= p[i - 1]:
-            raise InputError(f"{row}: pressure {p[i]:g} must be below that of the row before, {p[i - 1]:g}.")
+            problem = f", {s[i]:g} and {p[i]:g}, is not finite; remove or correct it."
+        elif p[i] <= 0:
+            problem = f": pressure {p[i]:g} must be positive; end the table where contact ends."
+        elif i and s[i] <= s[i - 1]:
+            problem = f": separation {s[i]:g} must exceed that of the row before, {s[i - 1]:g}."
+        elif i and p[i] >= p[i - 1]:
+            problem = f": pressure {p[i]:g} must be below that of the row before, {p[i - 1]:g}."
+        if problem:
+            raise RowError(f"{{row}}{problem}", i, f"row {i + 1} of the contact law's table")
 
 
 def _interpolant(s: Array, f: Array) -> tuple[Any, Any, int]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import math
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -15,9 +17,9 @@ from stribeck.files.cells import is_named, number_of, rows_listed, split_header
 from stribeck.files.table_reading import read_table
 from stribeck.files.text_table import TextTable
 from stribeck.files.writing import PathLike, path_of
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.units import InputError, RowError, show, to_si
 
-__all__ = ["BARE", "Column", "has_dimension", "read_columns", "si_factor", "stated_in"]
+__all__ = ["BARE", "Column", "Columns", "has_dimension", "read_columns", "si_factor", "stated_in"]
 
 BARE = {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01, "percent": 0.01, "‰": 0.001}  # Units of a bare number
 
@@ -79,6 +81,13 @@ class Column:
         words = split_header(header)[0].strip().lower()
         return is_named(header, self.pattern) or re.fullmatch(self.pattern, words) is not None
 
+    def is_in(self, table: TextTable) -> bool:
+        """Return whether one header may be it and has a unit of it."""
+        names = self.names_in(table)
+        unit = table.unit(names[0]) if names else ""
+        known = (unit in self.units) if self.units is not None else has_dimension(unit, self.dimension)
+        return len(names) == 1 and (known if unit else self.is_bare or self.dimension == "number")
+
     def factor(self, name: str, unit: str, where: str) -> float:
         """Return the SI value of a unit."""
         if not unit and self.is_bare:
@@ -89,11 +98,40 @@ class Column:
             raise InputError(f"{where}: the unit {show(unit)} of the {name} is not one of {', '.join(self.units)}.")
         return self.units[unit]
 
+    def numbers(self, table: TextTable, header: str, name: str, *, gaps: bool) -> tuple[Array, set[str]]:
+        """Return its numbers in SI units, and their units in the file."""
+        units = set[str]()
 
-def read_columns(
-    path: PathLike, advice: str, *choices: Mapping[str, Column], gaps: bool = False
-) -> tuple[dict[str, Array], tuple[str, ...]]:
-    """Return columns of a file in SI units, those of the first choice that is all there, and notes on rows left out.
+        def factor(unit: str, where: str) -> float:
+            units.add(unit)
+            return self.factor(name, unit, where)
+
+        return table.numbers_of(header, factor, gaps=gaps), units
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Columns of a file in SI units."""
+
+    path: Path
+    in_si: dict[str, Array]
+    units: dict[str, set[str]]  # Units of the numbers of each column in the file
+    rows: tuple[int, ...]  # Row of the file in which each number stands
+    notes: tuple[str, ...]  # On rows left out and on what was taken for granted
+
+    @contextlib.contextmanager
+    def named(self) -> Iterator[None]:
+        """Name the file, and its row, in the refusal of what is made of the columns."""
+        try:
+            yield
+        except RowError as problem:
+            raise InputError(f"{self.path}: {problem.placed(f'row {self.rows[problem.index]}')}") from None
+        except InputError as problem:
+            raise InputError(f"{self.path}: {problem}") from None
+
+
+def read_columns(path: PathLike, advice: str, *choices: Mapping[str, Column], gaps: bool = False) -> Columns:
+    """Return the columns of the first choice that is all there, with units that fit if one has them.
 
     Rows with ``gaps`` or text are left out, or else refused.
     """
@@ -103,8 +141,10 @@ def read_columns(
     if table.unread and not gaps:
         rows = rows_listed(sorted(table.unread))
         raise InputError(f"{file}: no numbers of the table above in row {rows}; take text out, or begin its rows with #.")
-    wanted = next((choice for choice in choices if all(each.names_in(table) for each in choice.values())), choices[-1])
-    found, taken, bare = {}, list[str](), list[str]()
+    there = [choice for choice in choices if all(each.names_in(table) for each in choice.values())]
+    fitting = (choice for choice in there if all(each.is_in(table) for each in choice.values()))
+    wanted = next(fitting, there[0] if there else choices[-1])
+    found, units, taken, bare = {}, dict[str, set[str]](), list[str](), list[str]()
     for name, column in wanted.items():
         headers = column.names_in(table)
         unit = table.unit(headers[0]) if headers else ""
@@ -113,7 +153,7 @@ def read_columns(
             which = f"{len(headers)} of which may be" if len(headers) > 1 else "none of which is"
             said = f"in which {show(headers[0])} has no unit" if without else f"{which} the {name}"
             raise InputError(f"{file}: the header is {show(', '.join(table.header))}, {said}; {advice}.")
-        found[name] = table.numbers_of(headers[0], functools.partial(column.factor, name), gaps=gaps)
+        found[name], units[name] = column.numbers(table, headers[0], name, gaps=gaps)
         taken.append(headers[0])
         if column.is_bare and not unit:
             bare.append(f"{show(headers[0])} was read in {IN_WORDS[column.dimension]}, as its header has no unit.")
@@ -121,7 +161,8 @@ def read_columns(
     empty = rows_listed(np.array(table.numbers)[~whole])
     notes = [*table.notes, *table.thousands_noted(taken), *bare]
     notes += [f"Rows with an empty cell left out: {empty}."] if empty else []
-    return {name: values[whole] for name, values in found.items()}, tuple(notes)
+    places = tuple(np.array(table.numbers)[whole].tolist())
+    return Columns(file, {name: values[whole] for name, values in found.items()}, units, places, tuple(notes))
 
 
 def stated_in(table: TextTable) -> Iterator[tuple[int, str, str, str]]:

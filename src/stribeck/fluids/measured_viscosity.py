@@ -32,7 +32,7 @@ from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.schema import numbers_of
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, RowError, show
 
 __all__ = ["FlowCurve", "flow_curve", "read_flow_curve"]
 
@@ -198,25 +198,20 @@ def read_flow_curve(path: str | os.PathLike[str], *, law: str | None = None) -> 
     advice = "name the columns 'shear rate [1/s]' and 'viscosity [mPa*s]' or 'shear stress [Pa]', with the units of the file"
     rate = Column(r"(shear |strain )?rate( of shear)?|shearrate|gamma dot|gammadot|scherrate|d", "rate")
     viscosity = Column(r"(shear |dynamic |apparent )?viscosity|eta|viskosität", "viscosity")
+    kinematic = Column(rf"{viscosity.pattern}|kinematic viscosity|kinematische viskosität|nu|ν", "kinematic")
     stress = Column(r"(shear ?)?stress|tau|τ|schubspannung", "pressure")
-    measured = {"shear rate": rate, "viscosity": viscosity}
-    try:  # a file without either is refused by its viscosity
-        columns_of, notes = read_columns(
-            path, advice, measured, {"shear rate": rate, "shear stress": stress}, measured, gaps=True
-        )
-    except InputError as problem:
-        said, kinematic, _ = str(problem).partition(": give it as kinematic_viscosity")
-        if not kinematic:
-            raise
-        raise InputError(f"{path}: {said}; multiply the column by the density and write mPa*s in its header.") from None
-    if "viscosity" not in columns_of:
-        rates, stresses = columns_of.values()
-        columns_of["viscosity"] = np.divide(stresses, rates, out=np.full(rates.shape, np.nan), where=rates != 0)
+    measured = (("viscosity", viscosity), ("shear stress", stress), ("kinematic viscosity", kinematic))
+    choices = [{"shear rate": rate, name: each} for name, each in measured]
+    # A file without any is refused by its viscosity.
+    columns = read_columns(path, advice, *choices, choices[0], gaps=True)
+    notes, (rates, values) = columns.notes, columns.in_si.values()
+    if "shear stress" in columns.in_si:
+        values = np.divide(values, rates, out=np.full(rates.shape, np.nan), where=rates != 0)
         notes += ("Viscosity is shear stress over shear rate.",)
-    try:
-        found = flow_curve(columns_of["shear rate"], columns_of["viscosity"], law=law)
-    except InputError as problem:
-        raise InputError(f"{path}: {problem}") from None
+    with columns.named():
+        if "kinematic viscosity" in columns.in_si:
+            raise InputError("its viscosity is a kinematic one; multiply the column by the density, and write mPa*s above it.")
+        found = flow_curve(rates, values, law=law)
     return replace(found, notes=(*notes, *found.notes))
 
 
@@ -231,9 +226,9 @@ def _checked(rate: Any, viscosity: Any) -> tuple[Array, Array]:
     for name, values in (("rate", x), ("viscosity", y)):
         wrong = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
         if wrong.size:
-            which = f"{values[wrong[0]]:g}, value {wrong[0] + 1} of {values.size}"
             advice = " Leave out rest, and the sign of the direction." if name == "rate" else ""
-            raise InputError(f"{name} holds {which}; all values must be finite and above zero.{advice}")
+            text = f"{name} holds {values[wrong[0]]:g}, {{row}}; all values must be finite and above zero.{advice}"
+            raise RowError(text, int(wrong[0]), f"value {wrong[0] + 1} of {values.size}")
     if np.unique(x).size < MIN_VALUES:
         raise InputError(f"viscosity at {np.unique(x).size} different rates; a law needs {MIN_VALUES} or more.")
     order = np.argsort(x)

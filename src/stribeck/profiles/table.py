@@ -202,18 +202,17 @@ def from_pressure(x: Any, p: Any, modulus: str | float, reversed: bool = False) 
 def _columns_of(path: Path) -> tuple[Array, Array]:
     """Return positions and heights from a file [m]."""
     from stribeck.files.columns import Column, read_columns  # slow to import, and most shapes name no file
-    from stribeck.files.table_reading import read_table
 
     columns = {name: Column(name, "length") for name in ("x", "z")}
     advice = "the first line must be 'x [mm], z [mm]', with the units of the file"
-    found, _ = read_columns(path, advice, columns)
-    x, z = found["x"], found["z"]
+    found = read_columns(path, advice, columns)
+    x, z = found.in_si.values()
     way = -1 if x[-1] < x[0] else 1  # -1 where the rows go backwards
     wrong = np.flatnonzero(way * np.diff(x) <= 0)
     if wrong.size:
-        rows = read_table(path, expected=advice).numbers
+        i = int(wrong[0])
         raise InputError(
-            f"{path}: row {rows[int(wrong[0]) + 1]} has a position of {x[wrong[0] + 1]:g} m after {x[wrong[0]]:g} m in row "
-            f"{rows[int(wrong[0])]}; sort the rows by x, with one height at each position."
+            f"{path}: row {found.rows[i + 1]} has a position of {x[i + 1]:g} m after {x[i]:g} m in row {found.rows[i]}; sort "
+            "the rows by x, with one height at each position."
         )
     return x[::way], z[::way]

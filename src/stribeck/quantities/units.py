@@ -22,6 +22,22 @@ class InputError(ValueError):
     """A value given by the user cannot be used; the message says why and what to try."""
 
 
+class RowError(InputError):
+    """One of many values cannot be used; in the text of the message ``{row}`` stands for its place."""
+
+    def __init__(self, text: str, index: int, place: str) -> None:
+        super().__init__(text, index, place)  # all of them, as a process hands an error over by its arguments
+        self.index, self.place = index, place
+
+    def __str__(self) -> str:
+        """Return the message."""
+        return self.placed(self.place)
+
+    def placed(self, place: str) -> str:
+        """Return the message with the place that a reader of files knows."""
+        return str(self.args[0]).replace("{row}", place)
+
+
 @dataclass(frozen=True)
 class Dimension:
     """A kind of quantity: what it is called, its SI unit, an example, and the units that display it."""

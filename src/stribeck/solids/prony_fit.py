@@ -26,7 +26,7 @@ from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.schema import Input
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, RowError
 from stribeck.solids.viscoelastic import MAX_TERMS, Prony
 
 __all__ = ["PronyFit", "fit_prony", "from_master_curve"]
@@ -238,31 +238,25 @@ def from_master_curve(path: str | os.PathLike[str], *, poisson_ratio: float = 0.
     )
     pattern = r"(angular |reduced |shifted )?(frequency|freq)|omega|ω|f|frequenz|kreisfrequenz"
     units = {"Hz": 2 * math.pi, "kHz": 2e3 * math.pi, "MHz": 2e6 * math.pi, "rad/s": 1.0, "1/s": 1.0}
-    frequency = {
-        "frequency": Column(pattern, "rotation", units),
-        # The same column, zero but for 1/s, of which a note tells what it was taken for
-        "frequency in 1/s": Column(pattern, "rotation", dict.fromkeys(units, 0.0) | {"1/s": 1.0}),
-    }
+    frequency = {"frequency": Column(pattern, "rotation", units)}
     names = {of: [_named(*words, *said) for words in MODULI.values()] for of, said in KINDS.items()}
     names[""] = [f"{words}|{tension}" for (words, _), tension in zip(MODULI.values(), names[TENSION], strict=True)]
     choices = (
         {f"{name}{of}": Column(each, "pressure") for name, each in zip(MODULI, patterns, strict=True)}
         for of, patterns in names.items()
     )
-    values, notes = read_columns(path, advice, *(frequency | choice for choice in choices), gaps=True)
-    omega, per_second, *moduli = values.values()
-    if per_second.any():
+    columns = read_columns(path, advice, *(frequency | choice for choice in choices), gaps=True)
+    notes, (omega, *moduli) = columns.notes, columns.in_si.values()
+    if "1/s" in columns.units["frequency"]:
         notes += ("Frequency in 1/s was taken for the angular one, in rad/s; write Hz where it counts cycles.",)
     factor = 1.0
-    if all(f"{name}{SHEAR}" in values for name in MODULI):
+    if all(f"{name}{SHEAR}" in columns.in_si for name in MODULI):
         factor = 2 * (1 + POISSON_RATIO.checked(poisson_ratio))
         notes += (f"Moduli of shear, G' and G'', were multiplied by 2 (1 + nu) = {factor:g} to become those of tension.",)
-    elif not any(f"{name}{TENSION}" in values for name in MODULI):
+    elif not any(f"{name}{TENSION}" in columns.in_si for name in MODULI):
         notes += ("Moduli were taken for those of tension, E' and E''; call moduli of shear G' and G'' in the header.",)
-    try:
+    with columns.named():
         found = fit_prony(omega, *(factor * each for each in moduli), poisson_ratio=poisson_ratio)
-    except InputError as problem:
-        raise InputError(f"{path}: {problem}") from None
     return replace(found, notes=(*notes, *found.notes))
 
 
@@ -305,8 +299,8 @@ def _checked(frequency: Any, storage: Any, loss: Any) -> tuple[Array, Array]:
         if wrong.size:
             first = values[wrong[0]]
             logarithm = " (a logarithm? give the frequency itself)" if name == "frequency" and first <= 0 else ""
-            which = f"value {wrong[0] + 1} of {values.size}"
-            raise InputError(f"{name} holds {first:g}, {which}{logarithm}; all values must be finite and above zero.")
+            text = f"{name} holds {first:g}, {{row}}{logarithm}; all values must be finite and above zero."
+            raise RowError(text, int(wrong[0]), f"value {wrong[0] + 1} of {values.size}")
     if np.unique(omega).size < MIN_VALUES:
         raise InputError(f"moduli at {np.unique(omega).size} different frequencies; a series needs {MIN_VALUES} or more.")
     order = np.argsort(omega, kind="stable")
