@@ -337,7 +337,7 @@ def _table(path: Path) -> _Table:
         shown = replace(found, header=called, rows=tuple(map(tuple, cells)))
         comma = not any("." in cell for row in cells for cell in row) or shown.decimal_comma(called)
     above = [*(line for _, line in found.above), ";".join(found.header)]
-    header = header_of(path, (line.lstrip("#%;!*/ ") for line in above))
+    header = header_of(path, (line.lstrip("#%;!*/ ") for line in above), comma=comma)
     values, missing_notes = _values(path, cells, numbers, comma=comma, codes=header.codes)
     if not any(names) and values.shape[1] == 3 and _numbers_rows(values[:, 0]) and _is_even(values[:, 1]):
         notes.append("The first column numbers the points and was left out.")
@@ -399,7 +399,7 @@ def _numbers_in(line: str) -> int:
 
 
 def _values(
-    path: Path, cells: list[list[str]], numbers: list[int], *, comma: bool, codes: tuple[str, ...]
+    path: Path, cells: list[list[str]], numbers: list[int], *, comma: bool, codes: tuple[float, ...]
 ) -> tuple[Array, list[str]]:
     """Return the numbers in cells, NaN where they hold no height, and which codes stand for that."""
     values = np.empty((len(cells), len(cells[0])))
@@ -417,12 +417,11 @@ def _values(
     for code in np.unique(z[beyond & np.isfinite(z)]):
         notes.append(_missing_note(int((z == code).sum()), "hold", f"{code:g}, a code for no height,"))
     z[beyond] = np.nan
-    declared = {float(code.replace(",", ".")) for code in codes}
-    for code in sorted(declared | {sign * size for size in MISSING_CODES for sign in (-1, 1)}):
+    for code in sorted({*codes} | {sign * size for size in MISSING_CODES for sign in (-1, 1)}):
         here = z == code
         rest = z[~here & ~np.isnan(z)]
         far = rest.size > 0 and np.abs(rest - code).min() > 3 * (rest.max() - rest.min())
-        if here.any() and (code in declared or far):
+        if here.any() and (code in codes or far):
             notes.append(_missing_note(int(here.sum()), "hold", f"{code:g}, a code for no height,"))
             z[here] = np.nan
     return values, notes
