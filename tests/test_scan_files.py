@@ -181,14 +181,14 @@ def test_marks_between_thousands_above_the_heights_are_refused_or_the_decimal_si
         words = "in .Scan Size: .*. may have marks between thousands; write it with a decimal point"
         with subtests.test(size=size), pytest.raises(sb.InputError, match=words):
             read(tmp_path, f"Scan Size: {size}{unit}" + matrix())
-    with pytest.raises(sb.InputError, match="'-9,999' in 'No data: -9,999' may have"):
-        read(tmp_path, f"Scan Size: 48 um\nNo data: -9,999{unit}" + matrix())
+    with pytest.raises(sb.InputError, match="'-9,999' in 'Invalid: -9,999' may have"):
+        read(tmp_path, f"Scan Size: 48 um\nInvalid: -9,999{unit}" + matrix())
     for size, text in (("48.000 um x 24.000 um", matrix()), ("48,000 um x 24,000 um", matrix().replace(".", ","))):
         with subtests.test(size=size):
             assert read(tmp_path, f"Scan Size: {size}{unit}{text}").spacing == pytest.approx((1e-6, 0.5e-6), rel=1e-9)
-    heights = rows(np.resize(LINE, 1024 * 16), form=("{:.2f}",))
-    scan = read(tmp_path, f"Samples/line: 1,024\nLines: 16\nPixel size: 1 um{unit}{heights}")
-    assert scan.heights.shape == (1024, 16)
+    heights = rows(np.resize(LINE, 1024 * 32), form=("{:.2f}",))
+    scan = read(tmp_path, f"Samples/line: 1,024\nLines: 32\nPixel size: 1 um{unit}{heights}")
+    assert scan.heights.shape == (1024, 32)
 
 
 def test_one_named_column_with_decimal_commas_is_one_column(subtests, tmp_path):
