@@ -87,7 +87,8 @@ def test_moduli_of_shear_become_those_of_tension_and_a_header_that_does_not_say_
         ("Tensile storage modulus", "Young's loss modulus", 1.0, ""),
         ("E_storage", "E_loss", 1.0, ""),
         ("Storage modulus", "Loss modulus", 1.0, assumed),
-        ("E'", "Loss modulus", 1.0, assumed),
+        ("E'", "Loss modulus", 1.0, ""),
+        ("Storage modulus", "G''", 2.6, turned),
     ):
         with subtests.test(storage=storage, loss=loss):
             path = write(tmp_path / "a.csv", f"frequency [Hz];{storage} [MPa];{loss} [MPa]")
@@ -97,8 +98,53 @@ def test_moduli_of_shear_become_those_of_tension_and_a_header_that_does_not_say_
                 [note for note in found.notes if said in note] if said else []
             )
             assert not said or any(said in note for note in found.notes)
-    with pytest.raises(sb.InputError, match="none of which is the loss modulus"):
+    with pytest.raises(sb.InputError, match="is a modulus of tension and .* one of shear; keep two of the same"):
         sb.solids.from_master_curve(write(tmp_path / "b.csv", "frequency [Hz];E' [MPa];G'' [MPa]"))
+
+
+def test_a_line_above_says_of_what_deformation_the_moduli_are(subtests, tmp_path):
+    for line, factor, said in (
+        ("Mode: shear", 2.6, "by row 1, were multiplied by"),
+        ("# Geometry: parallel plate 25 mm", 2.6, "by row 1, were multiplied by"),
+        ("Beanspruchung;Scherung;", 2.6, "by row 1, were multiplied by"),
+        ("Clamp;Tension: film;", 1.0, ""),
+        ("Modus: Dual Cantilever", 1.0, ""),
+        ("Pretension: none", 1.0, "taken for those of tension"),
+        ("Shear or tension", 1.0, "taken for those of tension"),
+    ):
+        with subtests.test(line=line):
+            path = write(tmp_path / "a.csv", f"{line}\nfrequency [Hz];Storage modulus [MPa];Loss modulus [MPa]")
+            found = sb.solids.from_master_curve(path, poisson_ratio=0.3)
+            assert found.relaxed_modulus == pytest.approx(factor * RELAXED, rel=1e-4, abs=0)
+            assert [said in note for note in found.notes if "tension" in note] == [True] * bool(said)
+    path = write(tmp_path / "b.csv", "Mode: shear\nfrequency [Hz];E' [MPa];E'' [MPa]")
+    assert sb.solids.from_master_curve(path).relaxed_modulus == pytest.approx(RELAXED, rel=1e-4, abs=0)
+
+
+def test_a_loss_tangent_and_a_reduced_frequency_stand_for_what_they_are_made_of(subtests, tmp_path):
+    storage, loss = moduli()
+    for names in (
+        "Reduced frequency [Hz];E' [MPa];tan delta",
+        "Reduced frequency (aT·f) [Hz];Storage modulus (MPa);Tan(δ)",
+        "Red. frequency aT*f [Hz];E' [MPa];Loss factor [-]",
+        "aT f [Hz];E' [MPa];tan(delta) [1]",
+        "a_T*f [Hz];E' [MPa];tan δ",
+        "Frequenz reduziert [Hz];Speichermodul [MPa];Verlustfaktor [-]",
+    ):
+        with subtests.test(names=names):
+            rows = zip(OMEGA / (2 * np.pi), storage / 1e6, loss / storage, strict=True)
+            lines = [names + ";Frequency [Hz]", *(";".join(f"{value:.9g}" for value in (*row, 1)) for row in rows)]
+            (tmp_path / "a.csv").write_text("\n".join(lines))
+            found = sb.solids.from_master_curve(tmp_path / "a.csv")
+            assert found.loss == pytest.approx(loss, rel=1e-6) and found.frequency == pytest.approx(OMEGA, rel=1e-6)
+            assert "The loss modulus is the storage modulus times the loss tangent." in found.notes
+    for name in ("E'' [MPa]", "Verlustmodul [MPa]"):
+        text = write(tmp_path / "b.csv", f"omega [s^-1];E' [MPa];{name}", factor=1.0).read_text()
+        (tmp_path / "b.csv").write_text(
+            "\n".join(f"{line};{k and 9 or 'tan delta'}" for k, line in enumerate(text.splitlines()))
+        )
+        found = sb.solids.from_master_curve(tmp_path / "b.csv")
+        assert found.loss == pytest.approx(loss, rel=1e-6)
 
 
 def test_a_frequency_per_second_says_that_it_was_taken_for_the_angular_one(tmp_path):

@@ -26,7 +26,7 @@ SUMMARY = re.compile(
 MAX_LISTED_ROWS = 10  # Rows that a sentence lists
 
 # What may stand in the brackets of a header in place of a unit: the letter of the quantity
-QUANTITY_LETTERS = frozenset({"µ", "μ", "mu", "COF", "cof", "u", "v", "U", "F_N", "Fn", "FN", "SRR"})
+QUANTITY_LETTERS = frozenset("µ μ mu COF cof u v U F_N Fn FN SRR δ delta ω η τ γ̇ ɣ̇ E' E'' G' G''".split())
 
 # Brackets that say which statistic of the samples a column holds, and no unit.
 _STATISTIC = re.compile(

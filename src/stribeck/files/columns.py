@@ -8,7 +8,6 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -35,6 +34,12 @@ _STATED = re.compile(
     r"\W*(?P<name>[^:;,=\t\[(]*?)\s*(?:[\[(](?P<before>[^\])]*)[\])])?\s*[:;,=\t][\s:;,=]*"
     r"(?P<value>[-+]?[0-9]+(?:[.,][0-9]+)?(?:[eE][-+]?[0-9]+)?)\s*[;,\t]?\s*[\[(]?(?P<after>(?:[A-Za-zµμ°][^;,:=\t\])]*)?)[\])]?[\s;,]*"
 )
+
+
+def is_called_or_signed(header: str, pattern: str) -> bool:
+    """Return whether the words of a header match a pattern, or its letter with its primes, as E''."""
+    # Primes are signs that a comparison of words leaves out.
+    return is_named(header, pattern) or re.fullmatch(pattern, split_header(header)[0].strip().lower()) is not None
 
 
 @functools.cache
@@ -70,16 +75,15 @@ class Column:
     dimension: str  # Of its unit; one of "number" needs none
     units: Mapping[str, float] | None = None  # Its units with their SI values, where a dimension says too little
     is_bare: bool = False  # Whether its unit may be left out, which then is that of SI
+    preferred: str = ""  # What that is called which is taken of several
 
     def names_in(self, table: TextTable) -> list[str]:
-        """Return the headers that may be it; of several those with a unit of its dimension."""
-        names = [name for name in dict.fromkeys(table.header) if name and self._matches(name)]
-        return names if len(names) == 1 else [name for name in names if has_dimension(table.unit(name), self.dimension)]
-
-    def _matches(self, header: str) -> bool:
-        # Primes, as of E'', are signs that a comparison of words leaves out.
-        words = split_header(header)[0].strip().lower()
-        return is_named(header, self.pattern) or re.fullmatch(self.pattern, words) is not None
+        """Return the headers that may be it; of several those with a unit of its dimension, or that are preferred."""
+        names = [name for name in dict.fromkeys(table.header) if name and is_called_or_signed(name, self.pattern)]
+        if len(names) > 1:
+            names = [name for name in names if has_dimension(table.unit(name), self.dimension)]
+        preferred = [name for name in names if len(names) > 1 and is_called_or_signed(name, self.preferred)]
+        return preferred or names
 
     def is_in(self, table: TextTable) -> bool:
         """Return whether one header may be it and has a unit of it."""
@@ -113,8 +117,9 @@ class Column:
 class Columns:
     """Columns of a file in SI units."""
 
-    path: Path
+    table: TextTable
     in_si: dict[str, Array]
+    headers: dict[str, str]
     units: dict[str, set[str]]  # Units of the numbers of each column in the file
     rows: tuple[int, ...]  # Row of the file in which each number stands
     notes: tuple[str, ...]  # On rows left out and on what was taken for granted
@@ -125,26 +130,28 @@ class Columns:
         try:
             yield
         except RowError as problem:
-            raise InputError(f"{self.path}: {problem.placed(f'row {self.rows[problem.index]}')}") from None
+            raise InputError(f"{self.table.path}: {problem.placed(f'row {self.rows[problem.index]}')}") from None
         except InputError as problem:
-            raise InputError(f"{self.path}: {problem}") from None
+            raise InputError(f"{self.table.path}: {problem}") from None
 
 
 def read_columns(path: PathLike, advice: str, *choices: Mapping[str, Column], gaps: bool = False) -> Columns:
-    """Return the columns of the first choice that is all there, with units that fit if one has them.
+    """Return the columns of the first choice that is all there, or of which also all units fit if there is one.
 
     Rows with ``gaps`` or text are left out, or else refused.
     """
     file = path_of(path)
     known = [column for choice in choices for column in choice.values()]
-    table = read_table(file, expected=advice, knows=lambda name: any(each._matches(name) for each in known))
+    table = read_table(
+        file, expected=advice, knows=lambda name: any(is_called_or_signed(name, each.pattern) for each in known)
+    )
     if table.unread and not gaps:
         rows = rows_listed(sorted(table.unread))
         raise InputError(f"{file}: no numbers of the table above in row {rows}; take text out, or begin its rows with #.")
     there = [choice for choice in choices if all(each.names_in(table) for each in choice.values())]
     fitting = (choice for choice in there if all(each.is_in(table) for each in choice.values()))
-    wanted = next(fitting, there[0] if there else choices[-1])
-    found, units, taken, bare = {}, dict[str, set[str]](), list[str](), list[str]()
+    wanted = next(fitting, (*there, *choices)[0])
+    found, units, taken, bare = {}, dict[str, set[str]](), dict[str, str](), list[str]()
     for name, column in wanted.items():
         headers = column.names_in(table)
         unit = table.unit(headers[0]) if headers else ""
@@ -154,15 +161,16 @@ def read_columns(path: PathLike, advice: str, *choices: Mapping[str, Column], ga
             said = f"in which {show(headers[0])} has no unit" if without else f"{which} the {name}"
             raise InputError(f"{file}: the header is {show(', '.join(table.header))}, {said}; {advice}.")
         found[name], units[name] = column.numbers(table, headers[0], name, gaps=gaps)
-        taken.append(headers[0])
+        taken[name] = headers[0]
         if column.is_bare and not unit:
             bare.append(f"{show(headers[0])} was read in {IN_WORDS[column.dimension]}, as its header has no unit.")
     whole = ~np.isnan(list(found.values())).any(axis=0)
     empty = rows_listed(np.array(table.numbers)[~whole])
-    notes = [*table.notes, *table.thousands_noted(taken), *bare]
+    notes = [*table.notes, *table.thousands_noted([*taken.values()]), *bare]
     notes += [f"Rows with an empty cell left out: {empty}."] if empty else []
     places = tuple(np.array(table.numbers)[whole].tolist())
-    return Columns(file, {name: values[whole] for name, values in found.items()}, units, places, tuple(notes))
+    in_si = {name: values[whole] for name, values in found.items()}
+    return Columns(table, in_si, taken, units, places, tuple(notes))
 
 
 def stated_in(table: TextTable) -> Iterator[tuple[int, str, str, str]]:

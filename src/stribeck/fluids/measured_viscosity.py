@@ -202,8 +202,7 @@ def read_flow_curve(path: str | os.PathLike[str], *, law: str | None = None) -> 
     stress = Column(r"(shear ?)?stress|tau|τ|schubspannung", "pressure")
     measured = (("viscosity", viscosity), ("shear stress", stress), ("kinematic viscosity", kinematic))
     choices = [{"shear rate": rate, name: each} for name, each in measured]
-    # A file without any is refused by its viscosity.
-    columns = read_columns(path, advice, *choices, choices[0], gaps=True)
+    columns = read_columns(path, advice, *choices, gaps=True)
     notes, (rates, values) = columns.notes, columns.in_si.values()
     if "shear stress" in columns.in_si:
         values = np.divide(values, rates, out=np.full(rates.shape, np.nan), where=rates != 0)

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
@@ -26,7 +27,7 @@ from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.schema import Input
-from stribeck.quantities.units import InputError, RowError
+from stribeck.quantities.units import InputError, RowError, show
 from stribeck.solids.viscoelastic import MAX_TERMS, Prony
 
 __all__ = ["PronyFit", "fit_prony", "from_master_curve"]
@@ -43,8 +44,21 @@ MODULI = {
     "storage modulus": (r"storage(?: modulus)?|speichermodul", "['′’´`]"),
     "loss modulus": (r"loss(?: modulus)?|verlustmodul", "(?:['′’´`]{2}|[\"″”])"),
 }
-TENSION, SHEAR = " of tension", " of shear"
+# Names of the frequency in the headers of files: of several, that of a master curve
+_SHIFTED, _SHIFT = "reduced|red|shifted|reduzierte?|verschoben", "a[ _]?t ?[ ·*] ?(?:f|omega|ω)"
+REDUCED = rf".*(?:{_SHIFTED}).*|{_SHIFT}"
+FREQUENCY = (
+    rf"(?:(?:angular|{_SHIFTED}) )*(?:freq(?:uency)?|(?:kreis)?frequenz)(?: (?:{_SHIFTED}))?(?: {_SHIFT})?|omega|ω|f|{_SHIFT}"
+)
+LOSS_TANGENT = r"(?:loss )?tan(?:gent)?(?:[ _]?(?:delta|δ|d))?|loss (?:factor|tangent)|damping factor|verlustfaktor"
+TENSION, SHEAR = "tension", "shear"
 KINDS = {TENSION: ("e", "tensile|young.?s|zug"), SHEAR: ("g", "shear|schub|scher")}
+# What lines above the header say of the deformation
+KINDS_ABOVE = {
+    TENSION: re.compile(r"\b(?:(?:tension|tensile|compression|bending|cantilever)\b|(?:zug|druck|biege))", re.IGNORECASE),
+    SHEAR: re.compile(r"\b(?:shear|torsion|(?:parallel|plate).plate|cone.plate|schub|scher|platte.platte)", re.IGNORECASE),
+}
+PER_SECOND = {"1/s", "s^-1", "s-1", "s⁻¹"}  # Units of the frequency that do not say whether they are of cycles or radians
 
 POISSON_RATIO = Input(
     name="poisson_ratio", label="Poisson ratio of the rubber", dimension="number", typical="0.5", source="rubber",
@@ -214,9 +228,9 @@ def from_master_curve(path: str | os.PathLike[str], *, poisson_ratio: float = 0.
     ----------
     path : str or path-like
         A text file or spreadsheet with columns of frequency, storage and loss modulus, with units, such as
-        ``frequency [Hz]; E' [MPa]; E'' [MPa]``; other columns are left out. ``rad/s`` and ``1/s`` are of an angular
-        frequency. Moduli of shear, G' and G'', are multiplied by 2 (1 + nu); moduli of which the header does not say what
-        they are of are taken for those of tension.
+        ``frequency [Hz]; E' [MPa]; E'' [MPa]``, or a loss tangent in place of the latter; other columns are left out.
+        ``rad/s`` and ``1/s`` are of an angular frequency. Moduli of shear, by their names or a line above the header, are
+        multiplied by 2 (1 + nu); where nothing says what they are of they are taken for those of tension.
     poisson_ratio : float
         Poisson's ratio nu, 0 to 0.5 [-].
 
@@ -230,30 +244,51 @@ def from_master_curve(path: str | os.PathLike[str], *, poisson_ratio: float = 0.
     InputError
         Where the file cannot be read or has no such columns, or its values allow no fit.
     """
-    from stribeck.files.columns import Column, read_columns  # slow to import, and most solids have no file
+    from stribeck.files.columns import (
+        Column,
+        is_called_or_signed,
+        read_columns,
+    )  # slow to import, and most solids have no file
 
     advice = (
-        "name the columns 'frequency [Hz]' and E' [MPa] and E'' [MPa], moduli of tension, or G' [MPa] and G'' [MPa], those of "
-        "shear, with the units of the file"
+        "name the columns 'frequency [Hz]', E' [MPa] and E'' [MPa] of tension or G' [MPa] and G'' [MPa] of shear, or "
+        "'tan delta' in place of the second modulus, with the units of the file"
     )
-    pattern = r"(angular |reduced |shifted )?(frequency|freq)|omega|ω|f|frequenz|kreisfrequenz"
-    units = {"Hz": 2 * math.pi, "kHz": 2e3 * math.pi, "MHz": 2e6 * math.pi, "rad/s": 1.0, "1/s": 1.0}
-    frequency = {"frequency": Column(pattern, "rotation", units)}
-    names = {of: [_named(*words, *said) for words in MODULI.values()] for of, said in KINDS.items()}
-    names[""] = [f"{words}|{tension}" for (words, _), tension in zip(MODULI.values(), names[TENSION], strict=True)]
-    choices = (
-        {f"{name}{of}": Column(each, "pressure") for name, each in zip(MODULI, patterns, strict=True)}
-        for of, patterns in names.items()
+    units = {"Hz": 2 * math.pi, "kHz": 2e3 * math.pi, "MHz": 2e6 * math.pi, "rad/s": 1.0} | dict.fromkeys(PER_SECOND, 1.0)
+    frequency = Column(FREQUENCY, "rotation", units, preferred=REDUCED)
+    signed = {name: {of: _named(*words, *said) for of, said in KINDS.items()} for name, words in MODULI.items()}
+    storage, loss = (
+        Column("|".join((words, *of.values())), "pressure", preferred=of[TENSION])
+        for (words, _), of in zip(MODULI.values(), signed.values(), strict=True)
     )
-    columns = read_columns(path, advice, *(frequency | choice for choice in choices), gaps=True)
+    measured = {"frequency": frequency, "storage modulus": storage}
+    choices = {"loss modulus": loss}, {"loss tangent": Column(LOSS_TANGENT, "number")}
+    columns = read_columns(path, advice, *(measured | each for each in choices), gaps=True)
     notes, (omega, *moduli) = columns.notes, columns.in_si.values()
-    if "1/s" in columns.units["frequency"]:
+    if PER_SECOND & columns.units["frequency"]:
         notes += ("Frequency in 1/s was taken for the angular one, in rad/s; write Hz where it counts cycles.",)
-    factor = 1.0
-    if all(f"{name}{SHEAR}" in columns.in_si for name in MODULI):
-        factor = 2 * (1 + POISSON_RATIO.checked(poisson_ratio))
-        notes += (f"Moduli of shear, G' and G'', were multiplied by 2 (1 + nu) = {factor:g} to become those of tension.",)
-    elif not any(f"{name}{TENSION}" in columns.in_si for name in MODULI):
+    if "loss tangent" in columns.in_si:
+        moduli[1] *= moduli[0]
+        notes += ("The loss modulus is the storage modulus times the loss tangent.",)
+    named = {
+        of: show(header)
+        for name, header in columns.headers.items()
+        for of, pattern in signed.get(name, {}).items()
+        if is_called_or_signed(header, pattern)
+    }
+    above = [
+        (of, f"row {row}") for of, words in KINDS_ABOVE.items() for row, text in columns.table.above if words.search(text)
+    ]
+    stated = named or (dict(above) if len(dict(above)) == 1 else {})
+    if len(stated) > 1:
+        raise InputError(
+            f"{path}: {named[TENSION]} is a modulus of tension and {named[SHEAR]} one of shear; keep two of the same."
+        )
+    factor = 2 * (1 + POISSON_RATIO.checked(poisson_ratio)) if SHEAR in stated else 1.0
+    if SHEAR in stated:
+        by = f"Moduli of shear, by {stated[SHEAR]}, were multiplied by 2 (1 + nu) = {factor:g}"
+        notes += (f"{by} to become those of tension.",)
+    elif not stated:
         notes += ("Moduli were taken for those of tension, E' and E''; call moduli of shear G' and G'' in the header.",)
     with columns.named():
         found = fit_prony(omega, *(factor * each for each in moduli), poisson_ratio=poisson_ratio)
