@@ -137,6 +137,33 @@ def test_a_shear_stress_stands_for_the_viscosity_and_a_kinematic_one_is_refused(
             sb.fluids.read_flow_curve(path)
 
 
+def test_headings_of_rheometers_name_rate_viscosity_and_stress(subtests, tmp_path):
+    values, rate = measured("cross"), "{:.6g}".format
+    for header, factors in (
+        ("t in s;T in °C;ɣ̇ in 1/s;η in mPas;τ in Pa", (1e3, 1.0)),
+        ("t in s\tT in °C\tγ̇ in 1/s\tη in Pas\tτ in Pa", (1.0, 1.0)),
+        ("t in s   T in °C   GP in 1/s   Eta in mPas   Tau in Pa", (1e3, 1.0)),
+        ("Zeit [s];Temperatur [°C];Schergeschwindigkeit [1/s];Viskosität [mPa·s];Schubspannung [Pa]", (1e3, 1.0)),
+        ("Zeit [s];Temperatur [°C];Schergefälle [s-1];Scherviskosität [mPas];Scherspannung [mPa]", (1e3, 1e3)),
+        ("Zeit / s;Temperatur / °C;Scherrate / s^-1;dynamische Viskosität / mPa s;τ / Pa", (1e3, 1.0)),
+    ):
+        mark = next((mark for mark in ";\t" if mark in header), "   ")
+        lines = (
+            mark.join((str(k), "25", rate(x), rate(factors[0] * y), rate(factors[1] * x * y)))
+            for k, (x, y) in enumerate(zip(RATE, values, strict=True))
+        )
+        path = tmp_path / "gum.csv"
+        path.write_text("\n".join([header, *lines]), encoding="utf-8")
+        for name in (header, header.replace("η", "X").replace("Eta", "X").replace("iskosität", "X")):
+            with subtests.test(name=name):
+                path.write_text("\n".join([name, *path.read_text(encoding="utf-8").splitlines()[1:]]), encoding="utf-8")
+                found = sb.fluids.read_flow_curve(path)
+                assert found.measured == pytest.approx(values, rel=1e-5) and found.rate == pytest.approx(RATE, rel=1e-5)
+    with pytest.raises(sb.InputError, match="header is 'n in 1/min, M in mNm', none of which is the shear rate; name the"):
+        path.write_text("n in 1/min;M in mNm\n1;2\n")
+        sb.fluids.read_flow_curve(path)
+
+
 def test_a_law_shows_its_numbers_with_their_errors_and_is_the_fluid_of_a_contact():
     found = sb.fluids.flow_curve(RATE, measured("carreau"))
     rows = [line.split() for line in str(found).splitlines()]

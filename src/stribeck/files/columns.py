@@ -62,6 +62,8 @@ def si_factor(unit: str, dimension: str, name: str) -> float:
         return 2 * math.pi / 60
     if dimension == "rotation" and _TURNS_PER_SECOND.fullmatch(text):
         return 2 * math.pi
+    if dimension == "viscosity":
+        text = re.sub("(?<=Pa)s$", "*s", text)  # mPas, as rheometers write it, can be nothing else
     if dimension == "number" and text in BARE:
         return BARE[text]
     return to_si(f"1 {text}", dimension, name)

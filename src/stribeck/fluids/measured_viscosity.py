@@ -196,10 +196,14 @@ def read_flow_curve(path: str | os.PathLike[str], *, law: str | None = None) -> 
     from stribeck.files.columns import Column, read_columns  # slow to import, and most fluids have no file
 
     advice = "name the columns 'shear rate [1/s]' and 'viscosity [mPa*s]' or 'shear stress [Pa]', with the units of the file"
-    rate = Column(r"(shear |strain )?rate( of shear)?|shearrate|gamma dot|gammadot|scherrate|d", "rate")
-    viscosity = Column(r"(shear |dynamic |apparent )?viscosity|eta|viskosität", "viscosity")
+    rate = Column(
+        "(shear |strain )?rate( of shear)?|shearrate|gamma ?dot|gp|[ɣγ][\u0307˙]|ý|d|"
+        "scher(rate|geschwindigkeit|gefälle)|geschwindigkeitsgefälle",
+        "rate",
+    )
+    viscosity = Column("(shear |dynamic |apparent )?viscosity|eta|η|(dynamische |scheinbare )?(scher)?viskosität", "viscosity")
     kinematic = Column(rf"{viscosity.pattern}|kinematic viscosity|kinematische viskosität|nu|ν", "kinematic")
-    stress = Column(r"(shear ?)?stress|tau|τ|schubspannung", "pressure")
+    stress = Column("(shear ?)?stress|tau|τ|(schub|scher)spannung", "pressure")
     measured = (("viscosity", viscosity), ("shear stress", stress), ("kinematic viscosity", kinematic))
     choices = [{"shear rate": rate, name: each} for name, each in measured]
     columns = read_columns(path, advice, *choices, gaps=True)
