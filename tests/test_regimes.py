@@ -256,11 +256,13 @@ def test_margins_with_errors_say_their_interval_in_the_sentence(capsys, tmp_path
 
 
 @pytest.mark.slow
-def test_a_fluid_that_thins_has_no_margin_in_viscosity():
-    thinning = CONTACT.replace(speed="20 mm/s", fluid=sb.fluids.Carreau("1 ms", 0.5))
-    found = regime_margins(thinning, rtol=1e-2)
-    assert [margin.name for margin in found.margins] == ["speed", "load", "roughness"]
-    assert any("thins with the shear rate" in note for note in found.notes)
+def test_viscosity_has_no_margin_where_speed_does_not_stand_for_it(subtests):
+    """Those of a viscoelastic body had been taken from the speed, although its Deborah number does not follow viscosity."""
+    for part in ({"fluid": sb.fluids.Carreau("1 ms", 0.5)}, {"solid": sb.solids.StandardLinearSolid("10 ms", 3.0)}):
+        with subtests.test(**part):
+            found = regime_margins(CONTACT.replace(speed="20 mm/s", **part), rtol=1e-2)
+            assert [margin.name for margin in found.margins] == ["speed", "load", "roughness"]
+            assert any("Viscosity has no margins" in note for note in found.notes)
 
 
 def test_slow_speeds_at_which_the_fluid_keeps_its_share_are_not_searched():

@@ -316,7 +316,7 @@ class RegimeMargins(Tabled):
     """A contact's regime and the way to its neighbours; its dataset has the changes of regime along ``crossing``."""
 
     regime: Regime  # The present one
-    margins: tuple[Margin, ...]  # For speed, load, roughness and viscosity; the last not for a fluid that thins
+    margins: tuple[Margin, ...]  # For speed, load, roughness and viscosity; the last not where speed does not stand for it
     notes: tuple[str, ...]  # Why an input leads nowhere, and whether the contact stands at a threshold
     geometry: Geometry = "line"
     counted: str = ""  # Which errors the intervals count and which inputs count as exact; empty without intervals
@@ -395,10 +395,12 @@ def regime_margins(
     found = [scan.along(name) for name in SCANNED]
     if contact.friction_of_asperities.uses_speed:
         notes.append("Viscosity has no margins: the stress of the asperities follows the speed, which does not stand for it.")
-    elif contact.replace(viscosity=2 * contact.viscosity).groups.model == contact.groups.model:
+    elif contact.replace(viscosity=2 * contact.viscosity, speed=contact.speed / 2).groups.model == contact.groups.model:
         found.append(_within(_of_viscosity(contact, found[0]), physical_bounds(contact, "viscosity")))
     else:
-        notes.append("Viscosity has no margins: this fluid thins with the shear rate, so that speed does not stand for it.")
+        notes.append(
+            "Viscosity has no margins: it acts on this fluid or body otherwise than the speed, which does not stand for it."
+        )
     if contact.speed > 0:
         found[0] = _within(found[0], physical_bounds(contact, "speed"))
     marks = [mark for margin in found for mark in (margin.less, margin.more) if mark is not None]
