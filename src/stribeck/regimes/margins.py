@@ -398,9 +398,7 @@ def regime_margins(
     elif contact.replace(viscosity=2 * contact.viscosity, speed=contact.speed / 2).groups.model == contact.groups.model:
         found.append(_within(_of_viscosity(contact, found[0]), physical_bounds(contact, "viscosity")))
     else:
-        notes.append(
-            "Viscosity has no margins: it acts on this fluid or body otherwise than the speed, which does not stand for it."
-        )
+        notes.append("Viscosity has no margins: speed, which acts otherwise on this fluid or body, does not stand for it.")
     if contact.speed > 0:
         found[0] = _within(found[0], physical_bounds(contact, "speed"))
     marks = [mark for margin in found for mark in (margin.less, margin.more) if mark is not None]
