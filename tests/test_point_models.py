@@ -49,6 +49,15 @@ def test_at_rest_a_thin_layer_bears_the_load_as_springs_do():
     assert found == pytest.approx(np.sqrt(8 * springs / 3) / (2 * springs), rel=5e-3)
 
 
+def test_a_curve_over_the_load_passes_through_layers_that_need_other_panels():
+    """Under less load the layer is thicker over the width of the contact: states had been read on the mesh of another one."""
+    inputs = {"radius": 0.01, "modulus": 2.7e6, "load": 0.3, "viscosity": 0.05, "speed": 0.03, "roughness": 1e-6}
+    contact = sb.PointContact(**inputs, alpha=2, beta=0.06, boundary_friction=0.7, solid=Layer(3e-3))
+    curve = sb.stribeck_curve(contact, load=(0.1, 0.5), points=3, rtol=1e-2)
+    found = [sb.solve(contact.replace(load=load), rtol=1e-3).friction().total for load in curve.values]
+    assert curve.friction.total == pytest.approx(found, rel=1e-3)
+
+
 @pytest.mark.quick
 def test_what_a_ball_does_not_have_is_refused_by_name(subtests):
     for parts, sentence in [

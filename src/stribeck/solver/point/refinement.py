@@ -259,20 +259,20 @@ def follow(
             return None
         fine = solve_level(wanted, speed, law, coarse.unknowns, coarse.mesh, tolerance)
         return pair_of(coarse, fine) if fine.outcome.ok else None
-    guess = old.unknowns if prediction is None else on_other_mesh(prediction, neighbour.fine, old)
+    guess = old.unknowns if prediction is None else on_other_mesh(prediction, mesh, neighbour.fine, old)
     coarse = solve_level(old.resolution, speed, law, guess, old.mesh, tolerance, old.iterated.preconditioner, least_part)
     if not coarse.outcome.ok:
         return None
     if prediction is None or now.is_full:
-        start = on_other_mesh(coarse.unknowns, old, neighbour.fine)
+        start = on_other_mesh(coarse.unknowns, coarse.mesh, old, neighbour.fine)
     fine = solve_level(now, speed, law, start, mesh, tolerance, neighbour.fine.iterated.preconditioner)
     return pair_of(coarse, fine) if fine.outcome.ok else None
 
 
-def on_other_mesh(y: Unknowns, here: Level, there: Level) -> Unknowns:
-    """Return unknowns on the mesh of one level of a neighbour from those on the mesh of its other, by how these two differ."""
+def on_other_mesh(y: Unknowns, mesh: PolarMesh, here: Level, there: Level) -> Unknowns:
+    """Return unknowns on the mesh of one level of a neighbour, by how that differs from its other, of about their mesh."""
     least, other = here.equations.least, there.unknowns
-    carried, known = (transfer(each, here.mesh, there.mesh, least) for each in (y, here.unknowns))
+    carried, known = (transfer(each, on, there.mesh, least) for each, on in ((y, mesh), (here.unknowns, here.mesh)))
     fluid = np.maximum(carried.fluid + other.fluid - known.fluid, just_above(least))
     return Unknowns(
         carried.gap * (other.gap / known.gap),
