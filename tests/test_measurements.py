@@ -51,7 +51,7 @@ SAME = {
     "a row of units": "speed;friction\nmm/s;-\n1;0.5\n10;0.25\n100;0.0625\n1000;0.125",
     "unsorted": "speed [m/s];friction\n1;0.125\n0.001;0.5\n0.1;0.0625\n0.01;0.25",
     "comments and empty lines": "# run 12\n\nspeed [m/s];friction\n0.001;0.5\n\n# pause\n0.01;0.25\n0.1;0.0625\n1;0.125\n;\n",
-    "missing values": PLAIN + "\n2;\n;0.3\nNaN;0.1\n3;n/a",
+    "missing values": PLAIN + "\n2;\n;0.3\nNaN;0.1\n3;n/a\n#DIV/0!;0.1\n3;inf",
     "other columns": "time;speed [m/s];friction;remark\n" + "9;0.001;0.5;x\n9;0.01;0.25;x\n9;0.1;0.0625;x\n9;1;0.125;x",
     "trailing separators": PLAIN.replace("\n", ";\n", 2).replace("friction;", "friction"),
 }
@@ -76,7 +76,7 @@ def test_a_mean_speed_is_not_taken_for_the_sum_of_the_surface_speeds(subtests, r
 
 
 def test_what_was_left_out_or_assumed_is_said(read):
-    assert read(SAME["missing values"]).notes == ("4 rows without a value left out: 6, 7, 8, 9.",)
+    assert read(SAME["missing values"]).notes == ("6 rows without a value left out: 6, 7, 8, 9, 10, 11.",)
     assert read(SAME["other columns"]).notes == ("Columns not used: time, remark.",)
     assert read(SAME["decimal commas"]).notes == ("Numbers were read with decimal commas.",)
 
@@ -184,7 +184,6 @@ REFUSED = {
     "negative friction": (PLAIN + "\n2;-0.1", "row 6, column 'friction'", "positive"),
     "percent unsaid": (PLAIN + "\n2;35", "row 6, column 'friction'", "percent"),
     "text": (PLAIN + "\n2;stick", "row 6, column 'friction'", "'stick' is not a number"),
-    "infinite": (PLAIN + "\n2;inf", "row 6, column 'friction'", "'inf' is not a number"),
     "too many cells": (PLAIN + "\n2;0.1;7", "row 6", "3 cells where the header has 2"),
     "too few cells": (PLAIN + "\n2", "row 6", "1 cell where the header has 2"),
     "decimal commas between commas": ("speed [m/s],friction\n0,001,0,5", "row 2", "commas cannot both"),

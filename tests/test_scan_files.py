@@ -280,6 +280,27 @@ def test_lines_of_a_map_in_which_nothing_was_measured_are_part_of_it(tmp_path):
     assert scan.heights.shape == (48, 50) and scan.missing == 96
 
 
+def test_a_line_without_a_height_in_a_column_is_a_gap_and_moves_no_other_point(subtests, tmp_path):
+    for mark in ("NaN", "---", "void", "#N/A", "#DIV/0!", "-inf", '""', "No Data"):
+        for header in ("Height unit: um\n", "Height unit: um\nz\n"):
+            with subtests.test(mark=mark, header=header):
+                cells = [f"{v:.4f}" for v in LINE]
+                cells[50] = mark
+                scan = read(tmp_path, header + "\n".join(cells), spacing="0.156 um")
+                assert np.flatnonzero(np.isnan(scan.heights)).tolist() == [50] and scan.heights.size == 400
+                assert any("1 point " in note and "as missing" in note for note in scan.notes)
+    text = "\n".join(f"{v:.4f}" for v in LINE)
+    for between in ("", "# a remark", "\n\n", "Ra;3"):
+        lines = text.splitlines()
+        lines.insert(50, between)
+        with subtests.test(between=between), pytest.raises(sb.InputError, match="line 52, between heights, holds none"):
+            read(tmp_path, "\n".join(["z [um]", *lines]), spacing="0.156 um")
+    assert read(tmp_path, "z [um]\n\n" + text.replace("\n", "\n\n"), spacing="0.156 um").heights.size == 400
+    blocks = "\n\n".join("\n".join(f"{v:.4f}" for v in row) for row in MAP)
+    scan = read(tmp_path, f"Samples/line: 48\nLines: 48\nUnit: um\n{blocks}", spacing="1 um")
+    assert scan.heights.shape == (48, 48)
+
+
 def test_heights_that_reach_to_a_code_are_heights(tmp_path):
     ramp = np.linspace(-12000, 12000, 400)
     ramp[33] = -9999

@@ -221,8 +221,11 @@ def test_what_is_left_out_below_the_heights_is_said(subtests, tmp_path):
     points = "\n".join(["x (um);y (um);z (nm)", *(f"{x:g};{y:g};{z * 1e9:.4f}" for x, y, z in grid_rows(heights, 1))])
     for body, options in ((matrix, {"unit": "nm", "spacing": "1 um"}), (points, {})):
         last = body.count("\n") + 1
+        mark = ";" if body is points else " "
         of_points = ["5", "Sa;0.41;nm\nSq;0.5;nm"] if body is points else []
-        for footer in ("end of data", "mean\n5", "Sa;Sq\n1;2\n3;4", *of_points):
+        statistics = (mark.join(row.split()) for row in ("Sa 0.41", "Sq 0.5 nm", "mean 5", f"Max.: {' 3' * 64}", "Ra[um] 1"))
+        footers = "end of data", "mean\n5", "Sa;Sq\n1;2\n3;4"
+        for footer in (*footers, *statistics, *of_points):
             with subtests.test(first=body[:8], footer=footer):
                 path = tmp_path / "scan.txt"
                 path.write_text(f"{body}\n{footer}\n# a comment is none\n")

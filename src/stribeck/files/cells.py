@@ -9,9 +9,14 @@ from collections.abc import Iterable
 from stribeck.quantities.units import InputError
 
 # Cells that hold no value, in lower case.
-MISSING_CELLS = frozenset({"", "-", "--", "---", "na", "n/a", "nan", "null", "none", "#n/a", "#nv", "nv", "?", "bad", "***"})
+MISSING_CELLS = frozenset({"", "-", "--", "---", "na", "n/a", "nan", "null", "none", "nv", "?", "bad"})
 
-_MISSING = re.compile(r"[*#-]{2,}|[+-]?nan\(?\w*\)?|[+-]?1\.#\w+|void|invalid|nodata|overflow|ovr|ovf")
+# What spreadsheets write in the place of a number that a formula does not find
+FORMULA_ERROR = re.compile(r"#(?:n/a|nv|div/0!|value!|wert!|num!|zahl!|ref!|bezug!)", re.IGNORECASE)
+
+_MISSING = re.compile(
+    rf"[*#-]{{2,}}|[+-]?nan\(?\w*\)?|[+-]?1\.#\w+|[+-]?inf(?:inity)?|void|invalid|nodata|overflow|ovr|ovf|{FORMULA_ERROR.pattern}"
+)
 
 # A number whose signs may stand between thousands
 THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:[,.' ][0-9]{3})+(?:[.,][0-9]+)?")
@@ -19,7 +24,8 @@ THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:[,.' ][0-9]{3})+(?:[.,][0-9]+)?"
 # What the cell beside a statistic of the rows above says
 SUMMARY = re.compile(
     r"(?:mean|average|avg|median|sum|total|min(?:imum)?|max(?:imum)?|r?sd|std|st\.? ?dev|std\.? ?dev|standard ?deviation|cv|"
-    r"mittel(?:wert)?|mw|summe|standardabweichung|stabw|varianz|variance|range|spannweite|n|count|anzahl)\.?(?: value)?:?",
+    r"mittel(?:wert)?|mw|summe|standardabweichung|stabw|varianz|variance|range|spannweite|n|count|anzahl|rms|"
+    r"[rs](?:a|q|z|t|p|v|ku|sk|sm|max|dq|dr))\.?(?: value)?:?(?: ?[\[(][^\])]*[\])])?",
     re.IGNORECASE,
 )
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
-from stribeck.files.cells import MISSING_CELLS, cells_of, has_number, is_missing, looks_like_units
+from stribeck.files.cells import FORMULA_ERROR, MISSING_CELLS, cells_of, has_number, is_missing, looks_like_units
 
 # Separators of columns beside white space; the first of several in a line wins.
 COLUMN_SEPARATORS = ("\t", ";", ",", "|")
@@ -32,7 +32,7 @@ class Line:
     @classmethod
     def of(cls, number: int, text: str, numbers_in: Callable[[str], int] | None = None) -> Self:
         """Return a line of a file, a row where two of its cells or more are numbers, or ``numbers_in`` counts one."""
-        comment = text.lstrip().startswith("#")
+        comment = text.lstrip().startswith("#") and not FORMULA_ERROR.match(text.lstrip())
         text = text.lstrip().lstrip("#") if comment else text
         numbers = 0 if comment else (numbers_in or _numbers_in)(text)
         return cls(number, text, comment, numbers, numbers > (numbers_in is None))

@@ -12,6 +12,7 @@ from stribeck.files.cells import (
     NUMBER_WITH_POINT,
     SUMMARY,
     has_number,
+    is_missing,
     number_of,
     rows_listed,
 )
@@ -248,7 +249,8 @@ def _body(
     def settle(*, header_follows: bool) -> None:
         """Take rows of another width for text above the next header, or for rows of few numbers; else refuse them."""
         for line, cells, count in pending:
-            if not header_follows and len(cells) != width and max(line.numbers, count) > wide:
+            statistic = SUMMARY.fullmatch(next(filter(None, cells), ""))
+            if not (header_follows or statistic) and len(cells) != width and max(line.numbers, count) > wide:
                 raise InputError(_ragged(path, line, cells, heading, elsewhere))
         pending.clear()
 
@@ -265,7 +267,8 @@ def _body(
             continue
         cells = heading.row(line.text, f"{path}: row {line.number}", filled_up)
         count = sum(map(has_number, cells))
-        if count == 0 and not line.numeric and (len(cells) != width or sum(map(bool, cells)) < 2):
+        gap = width == 1 and all(map(is_missing, cells))
+        if count == 0 and not (line.numeric or gap) and (len(cells) != width or sum(map(bool, cells)) < 2):
             continue  # text
         if len(cells) != width or (len(same) > 1 and count < 2):
             pending.append((line, cells, count))
@@ -287,7 +290,7 @@ def _ragged(path: Path, line: Line, cells: list[str], heading: Heading, elsewher
     other = next((name for mark, name in SEPARATORS.items() if mark != separator and line.text.count(mark) == width - 1), None)
     if separator == "," and len(cells) > width and all(re.fullmatch(r"[+-]?[0-9]+", cell) for cell in cells if cell):
         return f"{problem}; commas cannot both separate columns and begin decimals: export with semicolons or tabs."
-    if other:
+    if other and width > 1:
         mark = SEPARATORS.get(separator, "space")
         return f"{problem}: the header is separated by {mark}s and this row by {other}s; use one separator{elsewhere}."
     return f"{problem}; use one separator, and leave a cell empty if a value is missing{elsewhere}."

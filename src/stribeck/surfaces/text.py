@@ -109,7 +109,7 @@ def _without_positions(path: Path, table: _Table, spacing: Spacing, z_factor: fl
     if values.shape[1] > 1:
         values, found = _without_edges(path, table, unit, notes)
     # A row of the file is a line of the scan, and the first axis is along it.
-    z = _in_lines(path, values[:, 0], table.header, notes) if values.shape[1] == 1 else values.T
+    z = _in_lines(path, values[:, 0], table, notes) if values.shape[1] == 1 else values.T
     found = found[: z.ndim]
     if not any(found):
         found = table.header.spacing(path, z.shape)
@@ -135,10 +135,16 @@ def _without_positions(path: Path, table: _Table, spacing: Spacing, z_factor: fl
     return Topography(z * z_factor, tuple(steps), source=path.name, notes=tuple(notes))
 
 
-def _in_lines(path: Path, z: Array, header: Header, notes: list[str]) -> Array:
+def _in_lines(path: Path, z: Array, table: _Table, notes: list[str]) -> Array:
     """Return heights of one column as the map whose samples per line and lines are declared above them, if they are."""
-    samples, lines = header.samples, header.lines
+    samples, lines = table.header.samples, table.header.lines
     if samples is None or (lines is None and samples[0] == z.size):
+        apart = np.diff(table.lines)
+        if np.unique(apart).size > 1:
+            line = table.lines[int(np.argmax(apart != apart[0]))] + 1
+            raise InputError(
+                f"{path}: line {line}, between heights, holds none; write nan where a point is missing, or remove it."
+            )
         return z
     if lines is None or samples[0] * lines[0] != z.size:
         said = show(samples[1]) + (f" and {show(lines[1])}" if lines else " and no number of lines, as in 'Lines: 64'")
@@ -387,15 +393,11 @@ def _thousands_notes(cells: list[list[str]], names: list[str]) -> list[str]:
     return [f"Column {show(name)}: {read_as(cell)}" if name else read_as(cell) for name, cell in found if cell]
 
 
-def _is_missing(cell: str) -> bool:
-    return is_missing(cell) or cell.lower().lstrip("+-") in ("inf", "infinity")
-
-
 def _numbers_in(line: str) -> int:
     """Return how many numbers a line holds; none where another cell is neither a number nor missing."""
     cells = [cell for cell in (part.strip('" ') for part in re.split(r"[;\t, |]+", line)) if cell]
     numbers = sum(NUMBER_WITH_POINT.fullmatch(cell) is not None for cell in cells)
-    return numbers if numbers + sum(map(_is_missing, cells)) >= len(cells) else 0
+    return numbers if numbers + sum(map(is_missing, cells)) >= len(cells) else 0
 
 
 def _values(
@@ -406,13 +408,13 @@ def _values(
     for k, row in enumerate(cells):
         for j, cell in enumerate(row):
             try:
-                values[k, j] = math.nan if _is_missing(cell) else float(cell.replace(",", ".") if comma else cell)
+                values[k, j] = math.nan if is_missing(cell) else float(cell.replace(",", ".") if comma else cell)
             except ValueError:
                 raise InputError(f"{path}: line {numbers[k]}, column {j + 1} is {show(cell)}, not a number.") from None
     # Positions are left as they are: only heights may be missing.
     z = values if values.shape[1] > 3 else values[:, -1]
     beyond = ~np.isfinite(z) & ~np.isnan(z) | (np.abs(z) >= MAX_NUMBER)
-    words = Counter(cell for row in cells for cell in (row if len(row) > 3 else row[-1:]) if cell and _is_missing(cell))
+    words = Counter(cell for row in cells for cell in (row if len(row) > 3 else row[-1:]) if cell and is_missing(cell))
     notes = [_missing_note(count, "read", show(word)) for word, count in words.items()]
     for code in np.unique(z[beyond & np.isfinite(z)]):
         notes.append(_missing_note(int((z == code).sum()), "hold", f"{code:g}, a code for no height,"))
