@@ -457,6 +457,23 @@ def test_a_line_above_the_header_says_an_input_in_any_usual_form(subtests, writt
             assert read(written(f"{line}\n{rows}")).inputs[0]["viscosity"] == pytest.approx(0.05)
 
 
+def test_a_line_above_the_header_with_marks_between_thousands_is_refused(subtests, written):
+    rows = table("speed [mm/s];COF", speed, friction)
+    for line in ("Viscosity: 1,050 mPa*s", "Viscosity [mPa*s];Load\n1,050;3", "Viscosity: 1.050,0 mPa*s"):
+        with subtests.test(line=line):
+            text = f"{line}\n{rows}"
+            assert "may have marks between thousands; write it with a decimal point" in refusal(written(text))
+    commas = written("Viscosity: 1,050 Pa*s\nSampled: 1.000 points\n" + rows.replace(".", ","))
+    assert read(commas).inputs[0]["viscosity"] == pytest.approx(1.05)
+    turns = table("Speed [rpm];COF", lambda u, mu: u * 3 / np.pi, friction)
+    assert "'10,000' in row 1 may have" in refusal(written(f"Track radius: 10,000 µm\n{turns}"))
+
+
+def test_a_line_of_many_words_above_a_header_between_tabs_is_not_the_header(written):
+    rows = table("Time [s]\tspeed [mm/s]\tµ", lambda u, mu: u, speed, friction).replace(";", "\t")
+    assert_on_curve(read(written(f"Tribometer\nLin. Speed : 10 [cm/s] of the disc\nRadius : 5 [mm]\n{rows}")))
+
+
 def workbook(tmp_path, **sheets):
     """Return the path of a workbook of sheets of rows."""
     openpyxl = pytest.importorskip("openpyxl")

@@ -6,7 +6,7 @@ import csv
 import re
 from collections.abc import Iterable
 
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, show
 
 # Cells that hold no value, in lower case.
 MISSING_CELLS = frozenset({"", "-", "--", "---", "na", "n/a", "nan", "null", "none", "nv", "?", "bad"})
@@ -162,6 +162,15 @@ def read_as(cell: str) -> str:
     """Return how a number is read whose sign may stand between thousands."""
     number = float(cell.replace(",", "."))
     return f"{cell!r} was read as {number:g}, not as {1000 * number:g}."
+
+
+def decimal_of(text: str, sign: str, path: object, place: str) -> str:
+    """Return a number with a decimal point, or refuse one with marks that may be of thousands and are not the decimal sign."""
+    mantissa = re.split("[eE]", text)[0]
+    if THOUSANDS.fullmatch(mantissa) and re.sub(r"[+\-\d]", "", mantissa) != sign:
+        advice = "write it with a decimal point, and without them"
+        raise InputError(f"{path}: {show(text)} in {place} may have marks between thousands; {advice}.")
+    return text.replace(",", ".")
 
 
 def rows_listed(numbers: Iterable[object], most: int = MAX_LISTED_ROWS) -> str:

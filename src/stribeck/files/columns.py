@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.files.cells import is_named, number_of, rows_listed, split_header
+from stribeck.files.cells import NUMBER_WITH_UNIT, THOUSANDS, decimal_of, is_named, number_of, rows_listed, split_header
 from stribeck.files.table_reading import read_table
 from stribeck.files.text_table import TextTable
 from stribeck.files.writing import PathLike, path_of
@@ -32,7 +32,7 @@ _TURNS_PER_SECOND = re.compile(r"(?:rps|rev/s|U/s|1/s|Hz|s\^?[-−]1|s⁻¹)")
 
 _STATED = re.compile(
     r"\W*(?P<name>[^:;,=\t\[(]*?)\s*(?:[\[(](?P<before>[^\])]*)[\])])?\s*[:;,=\t][\s:;,=]*"
-    r"(?P<value>[-+]?[0-9]+(?:[.,][0-9]+)?(?:[eE][-+]?[0-9]+)?)\s*[;,\t]?\s*[\[(]?(?P<after>(?:[A-Za-zµμ°][^;,:=\t\])]*)?)[\])]?[\s;,]*"
+    rf"(?P<value>(?:{THOUSANDS.pattern}|[-+]?[0-9]+(?:[.,][0-9]+)?)(?:[eE][-+]?[0-9]+)?)\s*[;,\t]?\s*[\[(]?(?P<after>(?:[A-Za-zµμ°][^;,:=\t\])]*)?)[\])]?[\s;,]*"
 )
 
 
@@ -175,8 +175,15 @@ def read_columns(path: PathLike, advice: str, *choices: Mapping[str, Column], ga
     return Columns(table, in_si, taken, units, places, tuple(notes))
 
 
-def stated_in(table: TextTable) -> Iterator[tuple[int, str, str, str]]:
-    """Yield row, name, number and unit of each quantity that lines above the header give."""
+def stated_in(table: TextTable, pattern: str) -> Iterator[tuple[int, str, str, str]]:
+    """Yield row, name, number and unit of each quantity that is called so and that lines above the header give."""
+    for number, name, value, unit in _stated(table):
+        if is_named(name, pattern):
+            yield number, name, decimal_of(value, table.decimal_sign, table.path, f"row {number}") if unit else value, unit
+
+
+def _stated(table: TextTable) -> Iterator[tuple[int, str, str, str]]:
+    """Yield row, name, number as written and unit of each quantity that lines above the header give."""
     texts = [text.replace('"', "") for _, text in table.above]
     for (number, _), text, below in zip(table.above, texts, [*texts[1:], ""], strict=False):
         # One quantity in a line, several in it, or names whose values stand below.
@@ -188,6 +195,7 @@ def stated_in(table: TextTable) -> Iterator[tuple[int, str, str, str]]:
             continue
         for header, cell in zip(text.split(mark), below.split(mark), strict=False):
             name, unit = split_header(header.strip())
-            read = number_of(cell.strip(), "," if "," in cell else ".")
-            if read is not None:
-                yield number, name, repr(read[0]), read[1] or unit
+            parts = NUMBER_WITH_UNIT.fullmatch(cell.strip())
+            value, own = parts.groups() if parts else (cell.strip(), "")
+            if number_of(value, "," if "," in value else "."):
+                yield number, name, value, own or unit

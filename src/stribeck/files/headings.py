@@ -167,7 +167,9 @@ def _best(
             heading = Heading(at=i, first=i, below=below, separator=separator, names=names)
             if not mark and not heading.fits(lines[below]):
                 heading = replace(heading, names=("", *names))  # numbers of the rows have no name
-            if len(given) < fewest or any(map(has_number, names)) or not heading.fits(lines[below]):
+            # Cells that tabs leave empty at the end are of names that tabs separate, and not of the words of a sentence.
+            few = mark != separator and len(cells_of(lines[below].text, separator)) < len(names)
+            if few or len(given) < fewest or any(map(has_number, names)) or not heading.fits(lines[below]):
                 continue
             fitting.append(replace(heading, known=len({name for name in given if knows(name)})))
             break

@@ -48,6 +48,11 @@ class TextTable:
         """Return the unit of a column: that in its header, or in the row of units."""
         return split_header(name)[1] or (self.units_row[self.header.index(name)] if self.units_row else "")
 
+    @property
+    def decimal_sign(self) -> str:
+        """What begins the decimals of the numbers, a comma if any of them has one and none separates the columns."""
+        return "," if self.separator != "comma" and any("," in cell for row in self.rows for cell in row) else "."
+
     def decimal_comma(self, names: Sequence[str]) -> bool:
         """Return whether columns have decimal commas; refuse both signs, where 1,234 could mean two things."""
         comma: tuple[int, str, str] | None = None

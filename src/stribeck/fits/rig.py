@@ -16,7 +16,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import is_named, normalised_header, number_of
+from stribeck.files.cells import decimal_of, is_named, normalised_header
 from stribeck.files.columns import has_dimension, si_factor, stated_in
 from stribeck.files.text_table import TextTable
 from stribeck.fits.repeats import FEWEST
@@ -334,7 +334,8 @@ def _length(table: TextTable, pattern: str, given: float | None) -> tuple[Array,
         for inside in re.findall(r"[\[(]([^\[\]()]*)[\])]", name):
             found = _IN_BRACKETS.fullmatch(inside)
             if found and is_named(found["name"], pattern) and has_dimension(found["unit"], "length"):
-                length = float(found["value"].replace(",", ".")) * si_factor(found["unit"], "length", name)
+                value = decimal_of(found["value"], table.decimal_sign, table.path, show(name))
+                length = float(value) * si_factor(found["unit"], "length", name)
                 return of_all(_radius_of(found["name"]) * length, f"by {show(name)}")
     stated = _stated(table, pattern, "length")
     if stated is None:
@@ -345,17 +346,16 @@ def _length(table: TextTable, pattern: str, given: float | None) -> tuple[Array,
 
 def _stated(table: TextTable, pattern: str, dimension: str) -> tuple[float, int, str] | None:
     """Return a quantity [SI] that a line above the header gives with its unit, the row and its name; None if none does."""
-    for number, name, value, unit in stated_in(table):
-        read = number_of(value, "," if "," in value else ".")
-        if is_named(name, pattern) and read is not None and read[0] > 0 and has_dimension(unit or "-", dimension):
-            return read[0] * si_factor(unit, dimension, name), number, name
+    for number, name, value, unit in stated_in(table, pattern):
+        if has_dimension(unit or "-", dimension) and float(value) > 0:
+            return float(value) * si_factor(unit, dimension, name), number, name
     return None
 
 
 def _without_unit(table: TextTable, pattern: str) -> str:
     """Return that a line above the header gives a quantity without its unit, if one does."""
-    for number, name, value, unit in stated_in(table):
-        if is_named(name, pattern) and not unit:
+    for number, name, value, unit in stated_in(table, pattern):
+        if not unit:
             return f" (row {number} gives {show(name)} {value} without a unit)"
     return ""
 

@@ -7,7 +7,6 @@ from fnmatch import fnmatchcase
 from typing import Any
 
 from stribeck.cases.fit_settings import FitSettings, inputs_of_file
-from stribeck.files.cells import is_named
 from stribeck.files.columns import stated_in
 from stribeck.files.text_table import TextTable
 from stribeck.fits.rig import PATTERNS
@@ -68,10 +67,9 @@ def _overruled(table: dict[str, Any], by: dict[str, Any]) -> dict[str, Any]:
 def _lines(table: TextTable, settings: FitSettings) -> Iterator[tuple[str, tuple[str, int]]]:
     """Yield each input that lines above the header give once, with its text and row."""
     found: dict[str, dict[str, int]] = {}
-    for number, name, value, unit in stated_in(table):
-        value = value if "." in value else value.replace(",", ".")
-        for key, pattern in NAMES.items():
-            if unit and is_named(name, pattern) and _is_value(key, f"{value} {unit}", settings):
+    for key, pattern in NAMES.items():
+        for number, _, value, unit in stated_in(table, pattern):
+            if unit and _is_value(key, f"{value} {unit}", settings):
                 found.setdefault(key, {}).setdefault(f"{value} {unit}", number)
     for key, values in found.items():
         if len(values) == 1:

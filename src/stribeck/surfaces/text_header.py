@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from stribeck.files.cells import THOUSANDS
+from stribeck.files.cells import THOUSANDS, decimal_of
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["Header", "header_of", "unit_of", "unit_symbol"]
@@ -29,8 +29,7 @@ _WORDS = {
 }
 _LENGTH = r"(?:nm|µm|μm|um|ƒÊm|mm|cm|pm|m|Å|A|(?:" + "|".join(sorted(_WORDS, key=len, reverse=True)) + r")s?)"
 _UNIT = re.compile(rf"[\[(]\s*([^\])]+?)\s*[\])]|(?:^|[,/_ ])\s*({_LENGTH})\s*$", re.IGNORECASE)
-_GROUPS = r"\d{1,3}(?:[,.' ]\d{3})+"  # Digits between which marks may stand for thousands
-_NUMBER = rf"[+-]?(?:{_GROUPS}(?:[.,]\d+)?(?!\d)|\d+(?:[.,]\d+)?|\.\d+)(?:[eE][+-]?\d+)?"
+_NUMBER = rf"(?:{THOUSANDS.pattern}(?!\d)|[+-]?(?:\d+(?:[.,]\d+)?|\.\d+))(?:[eE][+-]?\d+)?"
 _PER = r"\s*(?:/|per|pro)\s*(?:pixels?|px|pix|samples?|points?|pts?|punkte?)\b\.?"
 _ENTRY = re.compile(
     rf"(?P<key>[^:=;,\t]*?[^\W\d_][^:=;,\t]*?)\s*[:=;,\t]+\s*(?P<first>{_NUMBER})\s*[;,\t]*\s*(?P<unit>{_LENGTH})?(?P<per>{_PER})?"
@@ -44,7 +43,7 @@ _CODE_LINE = re.compile(
 )
 _COUNT_LINE = re.compile(
     r"\W*(?:((?:samp(?:le)?s?|points|pixels)\s*(?:/|per)\s*line)|(?:number of |scan )?lines)\s*[:=;,\t]+\s*"
-    rf"({_GROUPS}|\d+)[\s;,\t]*",
+    r"(\d{1,3}(?:[,.' ]\d{3})+|\d+)[\s;,\t]*",
     re.IGNORECASE,
 )
 _OTHER = re.compile(
@@ -100,8 +99,8 @@ def unit_of(cell: str) -> str | None:
     return unit_symbol(match[1] or match[2])
 
 
-def header_of(path: Path, lines: Iterable[str], *, comma: bool) -> Header:
-    """Return what lines above heights with decimal points or commas declare of units, sizes, steps and codes."""
+def header_of(path: Path, lines: Iterable[str], sign: str = ".") -> Header:
+    """Return what lines above heights of a decimal sign declare of their units, sizes, steps and codes."""
     lateral = vertical = None
     samples = in_scan = None
     steps, sizes = dict[int, tuple[float, str]](), dict[int, tuple[float, str]]()
@@ -111,7 +110,7 @@ def header_of(path: Path, lines: Iterable[str], *, comma: bool) -> Header:
         line = re.sub(r'"\s*([,;\t])\s*"', r"\1", raw).strip('"').strip()
         code = _CODE_LINE.fullmatch(line)
         if code:
-            codes.append(_number(path, code[1], raw.strip(), comma=comma))
+            codes.append(float(decimal_of(code[1], sign, path, show(raw.strip()))))
             continue
         count = _COUNT_LINE.fullmatch(line)
         if count:
@@ -127,7 +126,7 @@ def header_of(path: Path, lines: Iterable[str], *, comma: bool) -> Header:
             lateral = symbol if not of_heights or of_positions else lateral
             vertical = symbol if not of_positions or of_heights else vertical
             continue
-        _size_or_step(path, line, raw.strip(), steps, sizes, heights, comma=comma)
+        _size_or_step(path, line, raw.strip(), steps, sizes, heights, sign)
     if heights and 0 in sizes:  # the height of a map beside its width, as Gwyddion writes them
         sizes.setdefault(1, heights[0])
     return Header(lateral, vertical, steps, sizes, tuple(codes), samples, in_scan)
@@ -137,16 +136,6 @@ def _normalised(text: str) -> str:
     return " ".join(re.sub(r"[^0-9a-zäöüßµμ]+", " ", text.lower()).split())
 
 
-def _number(path: Path, text: str, line: str, *, comma: bool) -> float:
-    """Return a number, or refuse one whose marks may stand between thousands and are not the decimal sign of the heights."""
-    if THOUSANDS.fullmatch(text) and re.sub(r"[+\-\d]", "", text) != (",", ".")[not comma]:
-        raise InputError(
-            f"{path}: {show(text)} in {show(line)} may have marks between thousands; write it with a decimal point, and "
-            "without them."
-        )
-    return float(text.replace(",", "."))
-
-
 def _size_or_step(
     path: Path,
     line: str,
@@ -154,8 +143,7 @@ def _size_or_step(
     steps: dict[int, tuple[float, str]],
     sizes: dict[int, tuple[float, str]],
     heights: list[tuple[float, str]],
-    *,
-    comma: bool,
+    sign: str,
 ) -> None:
     """Enter the lengths that a line such as ``Width: 48.00 um`` or ``XY calibration,1000.000,nm`` declares."""
     entry = _ENTRY.fullmatch(line)
@@ -174,7 +162,8 @@ def _size_or_step(
     numbers = [entry["first"], *([entry["second"]] if entry["second"] else [])]
     units = [entry["unit"] or unit, entry["other"] or unit]
     lengths = [
-        _number(path, number, original, comma=comma) * to_si(f"1 {unit_symbol(each)}", "length", f"{path}: {original}")
+        float(decimal_of(number, sign, path, show(original)))
+        * to_si(f"1 {unit_symbol(each)}", "length", f"{path}: {original}")
         for number, each in zip(numbers, units, strict=False)
     ]
     if not all(length > 0 and math.isfinite(length) for length in lengths):
