@@ -147,6 +147,26 @@ def test_a_loss_tangent_and_a_reduced_frequency_stand_for_what_they_are_made_of(
         assert found.loss == pytest.approx(loss, rel=1e-6)
 
 
+def test_quantities_over_their_units_and_two_columns_of_the_frequency_are_read(subtests, tmp_path):
+    for header, more in (
+        ("f/Hz;E'/MPa;E''/MPa", ""),
+        ("Frequency/Hz;Storage modulus/MPa;Loss modulus/MPa", ""),
+        ("Frequency [Hz];E' [MPa];E'' [MPa];Angular frequency [rad/s]", "9"),
+        ("aT f [Hz];E' [MPa];E'' [MPa];aT omega [rad/s];omega [rad/s]", "9;8"),
+    ):
+        with subtests.test(header=header):
+            first, *lines = write(tmp_path / "a.csv", header).read_text().splitlines()
+            omega = [f"{float(line.split(';')[0]) * 2 * np.pi:.9g}" for line in lines]
+            tails = [f";{w}{more[1:]}" if more else "" for w in omega]
+            (tmp_path / "a.csv").write_text("\n".join([first, *(a + b for a, b in zip(lines, tails, strict=True))]))
+            found = sb.solids.from_master_curve(tmp_path / "a.csv")
+            assert found.frequency == pytest.approx(OMEGA, rel=1e-6)
+            assert found.relaxed_modulus == pytest.approx(RELAXED, rel=1e-4, abs=0)
+    for unit in ("rpm", "furl"):
+        with pytest.raises(sb.InputError, match=r"b\.csv: column .* unit"):
+            sb.solids.from_master_curve(write(tmp_path / "b.csv", f"frequency [Hz];E' [{unit}];E'' [MPa]"))
+
+
 def test_a_frequency_per_second_says_that_it_was_taken_for_the_angular_one(tmp_path):
     for unit, factor in (("1/s", 1.0), ("rad/s", 1.0), ("Hz", 2 * np.pi)):
         path = write(tmp_path / "a.csv", f"Frequency [{unit}];E' [MPa];E'' [MPa]", factor=factor)

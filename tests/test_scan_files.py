@@ -99,6 +99,13 @@ def test_lines_that_contradict_each_other_are_refused(tmp_path):
         read(tmp_path, "Pixel size: 2 um\nWidth: 48 um\nHeight: 24 um\nUnit: um\n" + matrix())
 
 
+def test_one_size_of_a_map_that_is_not_square_is_refused(tmp_path):
+    text = "Scan size: 48 um\nAspect ratio: {}\nUnit: um\n" + matrix()
+    with pytest.raises(sb.InputError, match="'Scan size: 48 um' gives one size and 'Aspect ratio: 4:1' two; give both"):
+        read(tmp_path, text.format("4:1"))
+    assert read(tmp_path, text.format("1:1")).spacing == pytest.approx((1e-6, 1e-6))
+
+
 PROFILES = {
     "index": "Index,x (um),z (um)\n" + rows(range(400), X, LINE, form=("{}",)),
     "index without a name": ",x (um),z (um)\n" + rows(range(400), X, LINE, form=("{}",)),
@@ -114,6 +121,7 @@ PROFILES = {
     "table of R": '"x_um" "z_um"\n' + rows(range(1, 401), X, LINE, sep=" ", form=('"{}"',)),
     "end in words": "x (um),z (um)\n" + rows(X, LINE) + "\nEnd of data\n",
     "two pages": "x (um),z (um)\n" + rows(X[:90], LINE[:90]) + "\nx (um),z (um)\n" + rows(X[90:], LINE[90:]),
+    "old Ångström": "Lateral um,Raw A\n" + rows(X, 1e4 * LINE, form=("{:.4f}", "{:.1f}")),
     "column": "Points: 400\nSpacing: 0.156 um\nHeight unit: um\n" + rows(LINE),
 }
 

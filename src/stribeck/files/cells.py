@@ -48,7 +48,7 @@ NUMBER_WITH_POINT = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-
 NUMBER_WITH_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]{1,3})?")
 NUMBER_WITH_UNIT = re.compile(r"([+-]?[0-9.,]+(?:[eE][+-]?[0-9]{1,3})?)\s*([A-Za-zµμ%°].*)")
 _UNIT = re.compile(
-    r"(?:[pnuµμcmkMG]?(?:m|g|s|N|Pa|J|W|V|A|Hz|C|St|P|Nm|bar)|K|%|‰|°|°C|°F|deg|rad|sec|min|h|hr|hour|rpm|RPM|rev|in|ft|lbf?|"
+    r"(?:[pnuµμcmkMG]?(?:m|g|s|N|Pas?|J|W|V|A|Hz|C|St|P|Nm|bar)|K|%|‰|°|°C|°F|deg|rad|sec|min|h|hr|hour|rpm|RPM|rev|in|ft|lbf?|"
     r"k?gf|[Nn]ewton|a\.?u\.?|1)(?:\^?[-−]?[0-9]|[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?"
 )
 _WITHOUT_BRACKETS = re.compile(r"(.+?)[\s,_]+([pnuµμcmk]?m(?: ?/ ?|_per_|_)(?:s|sec|min|h)|rpm|RPM|%|[uµmk]?N)\s*")
@@ -64,11 +64,17 @@ def split_header(header: str) -> tuple[str, str]:
     )
     if units:  # of several brackets the one that holds a unit
         return f"{header[: units[-1].start()].rstrip()} {header[units[-1].end() :].lstrip()}".strip(), units[-1][1].strip()
-    parts = _HEADER.fullmatch(header) or _WITHOUT_BRACKETS.fullmatch(header)
+    parts = _HEADER.fullmatch(header) or _WITHOUT_BRACKETS.fullmatch(header) or _quotient(header)
     if parts is None or not parts[1]:
         return header.strip(), ""
     unit = next(unit for unit in parts.groups()[1:] if unit is not None).strip()
     return parts[1].strip(), "" if unit in QUANTITY_LETTERS else re.sub("_per_|_", "/", unit)
+
+
+def _quotient(header: str) -> re.Match[str] | None:
+    """Return name and unit of a header such as ``f/Hz``, a quantity over its unit, which is no unit itself."""
+    parts = re.fullmatch(r"([^/]+)/(.+)", header)
+    return parts if parts and looks_like_units(parts[2]) and not looks_like_units(parts[1].split(" ")[-1]) else None
 
 
 def normalised_header(header: str) -> str:

@@ -64,7 +64,9 @@ def si_factor(unit: str, dimension: str, name: str) -> float:
         return 2 * math.pi
     if dimension == "viscosity":
         text = re.sub("(?<=Pa)s$", "*s", text)  # mPas, as rheometers write it, can be nothing else
-    if dimension == "number" and text in BARE:
+    if dimension == "number" and text not in BARE:
+        raise InputError(f"{name} = {show(text)}; the column holds bare numbers, or numbers in %.")
+    if dimension == "number":
         return BARE[text]
     return to_si(f"1 {text}", dimension, name)
 
@@ -77,15 +79,16 @@ class Column:
     dimension: str  # Of its unit; one of "number" needs none
     units: Mapping[str, float] | None = None  # Its units with their SI values, where a dimension says too little
     is_bare: bool = False  # Whether its unit may be left out, which then is that of SI
-    preferred: str = ""  # What that is called which is taken of several
+    preferred: tuple[str, ...] = ()  # What those are called that are taken of several, the first most of all
 
     def names_in(self, table: TextTable) -> list[str]:
         """Return the headers that may be it; of several those with a unit of its dimension, or that are preferred."""
         names = [name for name in dict.fromkeys(table.header) if name and is_called_or_signed(name, self.pattern)]
         if len(names) > 1:
             names = [name for name in names if has_dimension(table.unit(name), self.dimension)]
-        preferred = [name for name in names if len(names) > 1 and is_called_or_signed(name, self.preferred)]
-        return preferred or names
+        for pattern in self.preferred:
+            names = [name for name in names if len(names) > 1 and is_called_or_signed(name, pattern)] or names
+        return names
 
     def is_in(self, table: TextTable) -> bool:
         """Return whether one header may be it and has a unit of it."""
@@ -99,7 +102,7 @@ class Column:
         if not unit and self.is_bare:
             return 1.0
         if self.units is None:
-            return si_factor(unit, self.dimension, name)
+            return si_factor(unit, self.dimension, f"{where}: unit")
         if unit not in self.units:
             raise InputError(f"{where}: the unit {show(unit)} of the {name} is not one of {', '.join(self.units)}.")
         return self.units[unit]

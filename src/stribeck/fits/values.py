@@ -108,10 +108,7 @@ def numbers(table: TextTable, name: str, meaning: str, settings: FitSettings) ->
                 f"{where} has no unit; write it in the header, as in '{name} [{example}]', or {meaning} = {show(example)} in "
                 "[fit.units]."
             )
-        try:
-            return si_factor(unit, dimension, meaning)
-        except InputError as problem:
-            raise InputError(f"{where}: {str(problem).replace(f'{meaning} = ', 'unit ', 1)}") from None
+        return si_factor(unit, dimension, f"{where}: unit")
 
     return table.numbers_of(name, factor, unit=unit_in(table, name, meaning, settings))
 

@@ -255,10 +255,10 @@ def from_master_curve(path: str | os.PathLike[str], *, poisson_ratio: float = 0.
         "'tan delta' in place of the second modulus, with the units of the file"
     )
     units = {"Hz": 2 * math.pi, "kHz": 2e3 * math.pi, "MHz": 2e6 * math.pi, "rad/s": 1.0} | dict.fromkeys(PER_SECOND, 1.0)
-    frequency = Column(FREQUENCY, "rotation", units, preferred=REDUCED)
+    frequency = Column(FREQUENCY, "rotation", units, preferred=(REDUCED, ".*(?:angular|omega|ω|kreis).*"))
     signed = {name: {of: _named(*words, *said) for of, said in KINDS.items()} for name, words in MODULI.items()}
     storage, loss = (
-        Column("|".join((words, *of.values())), "pressure", preferred=of[TENSION])
+        Column("|".join((words, *of.values())), "pressure", preferred=(of[TENSION],))
         for (words, _), of in zip(MODULI.values(), signed.values(), strict=True)
     )
     measured = {"frequency": frequency, "storage modulus": storage}

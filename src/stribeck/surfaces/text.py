@@ -117,7 +117,7 @@ def _without_positions(path: Path, table: _Table, spacing: Spacing, z_factor: fl
     steps = []
     for axis, declared in enumerate(found):
         if declared is None and given is None:
-            what = "one column" if z.ndim == 1 else f"{values.shape[1]} columns, a matrix of heights"
+            what = "one column" if values.shape[1] == 1 else f"{values.shape[1]} columns, a matrix of heights"
             raise InputError(
                 f"{path} has {what} without positions; give the distance between points with --spacing '0.5 um' "
                 "(in Python spacing='0.5 um')."

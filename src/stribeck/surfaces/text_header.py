@@ -46,6 +46,7 @@ _COUNT_LINE = re.compile(
     r"(\d{1,3}(?:[,.' ]\d{3})+|\d+)[\s;,\t]*",
     re.IGNORECASE,
 )
+_ASPECT_LINE = re.compile(r"\W*aspect ratio\s*[:=;,\t]+\s*([\d.,]+)\s*[:x×/]\s*([\d.,]+)\W*", re.IGNORECASE)
 _OTHER = re.compile(
     r"\b(z|values?|speed|time|force|minimum|maximum|min|max|cut ?off|filter|lambda|tip|radius|wavelengths?|offset|position|"
     r"origin|start|end|focus|objective|magnification|rms|s?[rs]aq?|sigma|standard|file|data)\b"
@@ -87,7 +88,7 @@ class Header:
 
 def unit_symbol(text: str) -> str:
     """Return a unit as the package spells it: ``um`` for ``Micrometer``."""
-    word = text.strip().lower()
+    word = "angstrom" if text.strip() == "A" else text.strip().lower()  # no current
     return _WORDS.get(word, _WORDS.get(word.removesuffix("s"), text.strip().replace("ƒÊ", "u")))
 
 
@@ -102,7 +103,7 @@ def unit_of(cell: str) -> str | None:
 def header_of(path: Path, lines: Iterable[str], sign: str = ".") -> Header:
     """Return what lines above heights of a decimal sign declare of their units, sizes, steps and codes."""
     lateral = vertical = None
-    samples = in_scan = None
+    samples = in_scan = aspect = None
     steps, sizes = dict[int, tuple[float, str]](), dict[int, tuple[float, str]]()
     heights: list[tuple[float, str]] = []
     codes = []
@@ -112,6 +113,9 @@ def header_of(path: Path, lines: Iterable[str], sign: str = ".") -> Header:
         if code:
             codes.append(float(decimal_of(code[1], sign, path, show(raw.strip()))))
             continue
+        ratio = _ASPECT_LINE.fullmatch(line)
+        if ratio and ratio[1] != ratio[2]:
+            aspect = raw.strip()
         count = _COUNT_LINE.fullmatch(line)
         if count:
             declared = int(re.sub(r"\D", "", count[2])), raw.strip()
@@ -129,6 +133,10 @@ def header_of(path: Path, lines: Iterable[str], sign: str = ".") -> Header:
         _size_or_step(path, line, raw.strip(), steps, sizes, heights, sign)
     if heights and 0 in sizes:  # the height of a map beside its width, as Gwyddion writes them
         sizes.setdefault(1, heights[0])
+    if aspect and 0 in sizes and sizes.get(1) == sizes[0]:
+        raise InputError(
+            f"{path}: {show(sizes[0][1])} gives one size and {show(aspect)} two; give both, as in 'Scan size: 40 um x 10 um'."
+        )
     return Header(lateral, vertical, steps, sizes, tuple(codes), samples, in_scan)
 
 
