@@ -436,6 +436,16 @@ def test_means_and_deviations_below_the_rows_are_no_rows(subtests, written):
             found = read(written(f"{rows.strip()}\n{footer}\n"))
             assert_on_curve(found)
             assert any("below the numbers left out: 10" in note for note in found.notes)
+    header, *lines = rows.strip().splitlines()
+    for between in ("Mean;{};0.9", "Std;0.01;0.02"):
+        with subtests.test(between=between):
+            steps = [f"{line}\n{between.format(line.split(';')[1])}" for line in lines]
+            found = read(written("\n".join([header, *steps])))
+            assert_on_curve(found)
+            assert any("of other text between the numbers left out: 3, 5, 7" in note for note in found.notes)
+    behind = "speed [mm/s];COF;\n1;0.5;\n3;0.4;\n2;0.9;mean\n10;0.3;\n30;0.2;\n20;0.9;mean\n"
+    assert read(written(behind)).friction.tolist() == [0.5, 0.4, 0.3, 0.2]
+    assert len(read(written(behind.replace("COF;", "COF;remark")))) == 5
     alone = "speed [mm/s];what;COF\n1;mean;0.5\n10;mean;0.3\n100;mean;0.1\n"
     assert len(read(written(alone))) == 3
 

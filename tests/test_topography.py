@@ -249,7 +249,7 @@ TEXTS = {
     "unknown unit in the header": ("x (um);z (foo)\n1;2\n2;3\n", {}, "unit of heights"),
     "ragged": ("1;2\n2;3\n3;4;5\n", {"unit": "um"}, "row 3 has 3 cells where the rows above have 2"),
     "word": ("1;2\n2;oops\n3;4\n", {"unit": "um"}, "line 2, column 2 is 'oops', not a number"),
-    "word before the last row": ("1;2\nRa;0.4\n3;4\n", {"unit": "um"}, "line 2, column 1 is 'Ra', not a number"),
+    "word before the last row": ("1;2\nPeak;0.4\n3;4\n", {"unit": "um"}, "line 2, column 1 is 'Peak', not a number"),
     "no numbers": ("hello\nworld\n", {"unit": "um"}, "no line of numbers"),
     "empty": ("", {"unit": "um"}, "holds no data; give lines of heights"),
     "no position": ("1;2\n;3\n3;4\n", {"unit": "um"}, "line 2 has no position"),

@@ -19,7 +19,14 @@ from stribeck.files.cells import (
 from stribeck.files.headings import Heading, Line, headings_in
 from stribeck.files.reading import text_of
 from stribeck.files.spreadsheet import SPREADSHEET_ENDINGS, sheets_of
-from stribeck.files.text_table import TextTable, are_pairs, drop_repeated_columns, split_errors, stack_curves
+from stribeck.files.text_table import (
+    TextTable,
+    are_pairs,
+    drop_repeated_columns,
+    rows_but_statistics,
+    split_errors,
+    stack_curves,
+)
 from stribeck.quantities.units import InputError, show
 
 SEPARATORS = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar"}
@@ -278,9 +285,8 @@ def _body(
             numbers.append(line.number)
             steps.append(step)
     settle(header_follows=False)
-    summary = next((k for k in range(len(rows), 0, -1) if not any(map(SUMMARY.fullmatch, rows[k - 1]))), len(rows))
-    summary = max(summary, (len(rows) + 1) // 2)  # a table may be one of means alone
-    return rows[:summary], numbers[:summary], steps[:summary]
+    kept = rows_but_statistics(heading.names, rows)
+    return [rows[k] for k in kept], [numbers[k] for k in kept], [steps[k] for k in kept]
 
 
 def _ragged(path: Path, line: Line, cells: list[str], heading: Heading, elsewhere: str) -> str:

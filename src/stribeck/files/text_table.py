@@ -14,6 +14,7 @@ from stribeck.files.cells import (
     NUMBER_WITH_COMMA,
     NUMBER_WITH_POINT,
     NUMBER_WITH_UNIT,
+    SUMMARY,
     THOUSANDS,
     has_number,
     is_missing,
@@ -168,6 +169,23 @@ def drop_repeated_columns(table: TextTable) -> TextTable:
         elif not name and any(cells):
             kept.append(i)
     return table if len(kept) == len(table.header) else table.of_columns(kept)
+
+
+def rows_but_statistics(names: Sequence[str], rows: Sequence[Sequence[str]]) -> list[int]:
+    """Return which rows are no statistics of others: not called so below all, nor in a column of numbers or without a name."""
+    called = {
+        (k, j) for k, row in enumerate(rows) for j, cell in enumerate(row) if cell[:1].isalpha() and SUMMARY.fullmatch(cell)
+    }
+    of_numbers = set[int]()
+    for column in {j for _, j in called}:
+        others = [row[column] for k, row in enumerate(rows) if (k, column) not in called]
+        if others and all(has_number(cell) or not (cell or names[column]) for cell in others):
+            of_numbers.add(column)
+    statistics = {k for k, _ in called}
+    last = next((k for k in range(len(rows), 0, -1) if k - 1 not in statistics), len(rows))
+    last = max(last, (len(rows) + 1) // 2)  # a table may be one of means alone
+    between = {k for k, j in called if j in of_numbers}
+    return [k for k in range(last) if k not in between]
 
 
 def are_pairs(header: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> bool:
