@@ -13,16 +13,31 @@ BALL = ball_data.BALL.replace(slide_to_roll=2.0)
 LAW = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=3e4, q1=3e6, hurst=0.8))
 
 
+# Deep in boundary lubrication the fluid's share is smaller than errors of slopes were: other regimes stood 1 % away.
+LIGHT = sb.PointContact(
+    radius=8e-3,
+    modulus=2.8e6,
+    load=3.5e-3,
+    viscosity=0.013,
+    speed=1.1e-3,
+    roughness=4.6e-6,
+    alpha=2,
+    beta=0.06,
+    boundary_friction=0.4,
+)
+
+
 @pytest.mark.slow
-def test_margins_of_a_ball_lead_to_the_regimes_that_they_name():
-    found = regime_margins(BALL, rtol=1e-3)
-    assert found.regime == "mixed" and found.geometry == "point"
+@pytest.mark.parametrize("ball", [BALL, LIGHT], ids=["mixed", "boundary"])
+def test_margins_of_a_ball_lead_to_the_regimes_that_they_name(ball):
+    found = regime_margins(ball, rtol=1e-3)
+    assert found.regime == sb.solve(ball, rtol=1e-3).regime and found.geometry == "point"
     for margin in found.margins:
         for mark in (margin.less, margin.more):
-            if mark is None or margin.name == "load":
-                continue
-            ends = [sb.solve(BALL.replace(**{margin.name: mark.value * factor}), rtol=1e-4).regime for factor in (0.98, 1.02)]
-            assert set(ends) == {"mixed", mark.regime}, margin.name
+            if mark is not None:
+                values = (mark.value * factor for factor in (0.98, 1.02))
+                ends = {sb.solve(ball.replace(**{margin.name: value}), rtol=1e-4).regime for value in values}
+                assert ends == {found.regime, mark.regime}, margin.name
     speed, viscosity = found.margins[0], found.margins[3]
     assert viscosity.more.factor == pytest.approx(speed.more.factor)
 

@@ -131,7 +131,7 @@ class BallKnots:
                 besides = measure(fine.equations, fine.unknowns).items()
                 values |= {name: value for name, value in besides if name in (*WITHIN, AREA)}
             along = self.groups_at(s - LOG_STEP), self.groups_at(s + LOG_STEP), 2 * LOG_STEP
-            [change] = changes_along(state, {"along": along}, max(HALF_DIGITS, NEGLIGIBLE**2 * self.rtol)).values()
+            [change] = changes_along(state, {"along": along}, HALF_DIGITS).values()
             slopes = measured_change(state, along, change, measure)
         else:
             values = dict(state.values)
