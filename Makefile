@@ -105,7 +105,7 @@ slow: $(READY)
 
 # Debian's chromium, or CHROMIUM=/path/to/it.
 browser: $(BROWSER)
-	$(ONE_THREAD) $(BIN)/python -m pytest $(FINITE) -m browser $(BROWSER_TESTS) tests/test_browser.py tests/test_live_curve.py tests/test_benchmarks.py
+	$(ONE_THREAD) $(BIN)/python -m pytest $(FINITE) -m browser $(BROWSER_TESTS) tests/test_browser.py tests/test_live_curve.py
 
 screenshots: $(BROWSER)
 	$(ONE_THREAD) $(BIN)/python docs/explorer.py

@@ -2,7 +2,6 @@
 
 import ast
 import importlib
-import os
 import pkgutil
 import re
 import sys
@@ -49,19 +48,6 @@ NO_SCRIPTS = {"textbook"}
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.])")
 
 
-@pytest.fixture
-def run(load_benchmark, monkeypatch, capsys):
-    """Return a function that runs a script with arguments and returns what it prints."""
-
-    def run(script, *arguments):
-        module = load_benchmark(script) if isinstance(script, str) else script
-        monkeypatch.setattr(sys, "argv", [f"{module.__name__}.py", *arguments])
-        module.main()
-        return capsys.readouterr().out
-
-    return run
-
-
 def tables(text):
     """Return the tables of a text in Markdown, each as its rows of cells, the head first."""
     found = re.findall(r"(?:^\|.*\|\n)+", text, re.M)
@@ -104,25 +90,19 @@ def test_what_scripts_import_of_the_package_is_there():
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.slow] * (name in LONG)) for name in ARGUMENTS])
-def test_its_tables_come_out(load_benchmark, run, monkeypatch, name):
+def test_its_tables_come_out(load_benchmark, monkeypatch, capsys, name):
     script = load_benchmark(name)
     if name == "curve_speed":
         monkeypatch.setattr(script, "RUNS", 1)
     if name == "peers":
         for peer in script.PEERS:
             monkeypatch.setitem(sys.modules, peer, None)
-    text = run(script, *ARGUMENTS[name])
+    monkeypatch.setattr(sys, "argv", [f"{name}.py", *ARGUMENTS[name]])
+    script.main()
+    text = capsys.readouterr().out
     check(text)
     if name == "peers":
         assert all(f"pip install {peer}" in text for peer in script.PEERS)
-
-
-@pytest.mark.browser
-def test_the_explorer_is_timed(run, monkeypatch):
-    for name in [name for name in os.environ if name.startswith(("PYTEST", "NICEGUI"))]:
-        monkeypatch.delenv(name)  # the server would take itself for a part of the tests
-    tables = check(run("explorer_latency", "--number", "1"))
-    assert [len(rows) for _, _, *rows in tables] == [5, 5, 5]  # sliders of a cylinder, its solved curves, sliders of a ball
 
 
 def test_a_call_reaches_the_first_residual_through_few_files(subtests, load_benchmark):
