@@ -349,6 +349,7 @@ def test_a_file_that_is_no_table_is_refused_with_its_line(subtests, tmp_path):
         ("separation, pressure\n0, 1\n1, x\n2, 0.2\n3, 0.1\n", "row 3, column 'pressure': 'x' is not a number"),
         ("separation, pressure\n0, 1\n1, 0.5, 3\n", "row 3 has 3 cells where the header has 2; use one separator"),
         ("gap [um], pressure [m]\n0, 1\n", "law.csv: column 'pressure .m.': unit = '1 m' is a length"),
+        ("gap [um]; pressure [kPa]\n1,000; 9\n2,000; 8\n", "'1,000' in column 'gap .um.' may have marks between thousands"),
         ("gap [um], pressure\n0, 1\n", "the header is 'gap \\[um\\], pressure'"),
         ("separation, pressure\n0, 1\n1, 2\n2, 0.2\n3, 0.1\n", "law.csv: row 3: pressure 2 must be below"),
     ]:

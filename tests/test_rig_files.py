@@ -429,6 +429,16 @@ def test_the_standard_deviation_beside_friction_is_its_error(written):
     assert "'SD [%]' is of the friction in each row." in relative.notes
 
 
+def test_a_first_row_with_one_number_is_a_row(subtests, written):
+    for header in ("speed [mm/s];COF", "speed;COF\nmm/s;-", "speed;COF\n[mm/s];[1]"):
+        for first, notes in (("7;", True), ("7;NaN", True), ("7;-\n8;NaN", True), ("", False)):
+            with subtests.test(header=header, first=first):
+                rows = table("", speed, friction).strip()
+                found = read(written("\n".join(filter(None, (header, first, rows)))))
+                assert_on_curve(found)
+                assert any("without a value left out" in note for note in found.notes) == notes
+
+
 def test_means_and_deviations_below_the_rows_are_no_rows(subtests, written):
     rows = table("Nr.;speed [mm/s];COF", lambda u, mu: 7, speed, friction)
     for footer in ("Mittelwert;37;0.3\nStandardabweichung;54;0.2", "Mean;;0.3\nMax.;300;0.5", "Std. Dev.:;54;0.2"):

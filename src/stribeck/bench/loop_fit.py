@@ -18,6 +18,7 @@ from stribeck.contacts.geometries import LineContact
 from stribeck.files.columns import Column, read_columns
 from stribeck.files.results import Exported, Labelled
 from stribeck.files.writing import PathLike, path_of
+from stribeck.fits.columns import WORDS
 from stribeck.fits.diagnosis import WIDEST, Unidentifiable, undetermined
 from stribeck.fits.fit import names_to_fit
 from stribeck.fits.free_inputs import FreeInput, free_inputs
@@ -34,12 +35,12 @@ from stribeck.quantities.units import InputError, show
 from stribeck.strokes.result import Stroke
 from stribeck.strokes.stroke import Inlet, stroke
 
-FRICTION = Column(r"friction|friction coefficient|coefficient of friction|cof|mu|reibwert", "number")
+FRICTION = Column(WORDS["friction"], "number")
 
 # What friction may be measured over, the first that is there
 OVER = {
     "time": Column(r"(?:(?:elapsed|test|total|cycle) )?(?:time|zeit)|t", "time", is_bare=True),
-    "position": Column(r"position|displacement|path|stroke position|weg|x", "length", is_bare=True),
+    "position": Column(r"position|displacement|path|stroke position|weg|hub|x", "length", is_bare=True),
 }
 
 ADVICE = "a loop has a column 'friction', with the sign of the force against the motion, and one 'position [mm]' or 'time [s]'"

@@ -12,7 +12,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.files.cells import NUMBER_WITH_UNIT, THOUSANDS, decimal_of, is_named, number_of, rows_listed, split_header
+from stribeck.files.cells import (
+    NUMBER_WITH_UNIT,
+    THOUSANDS,
+    decimal_of,
+    is_named,
+    number_of,
+    rows_listed,
+    split_header,
+    thousands_in,
+)
 from stribeck.files.table_reading import read_table
 from stribeck.files.text_table import TextTable
 from stribeck.files.writing import PathLike, path_of
@@ -165,6 +174,8 @@ def read_columns(path: PathLike, advice: str, *choices: Mapping[str, Column], ga
             which = f"{len(headers)} of which may be" if len(headers) > 1 else "none of which is"
             said = f"in which {show(headers[0])} has no unit" if without else f"{which} the {name}"
             raise InputError(f"{file}: the header is {show(', '.join(table.header))}, {said}; {advice}.")
+        if not gaps:  # who makes something of the whole table has no notes
+            decimal_of(thousands_in(table.column(headers[0])), ".", file, f"column {show(headers[0])}")
         found[name], units[name] = column.numbers(table, headers[0], name, gaps=gaps)
         taken[name] = headers[0]
         if column.is_bare and not unit:

@@ -99,6 +99,15 @@ class Heading:
         """Return whether a line has a cell for each name."""
         return len(self.row(line.text, filled_up=self.separator == "\t")) == len(self.names)
 
+    def holds_numbers(self, line: Line) -> bool:
+        """Return whether a line holds a number and nothing else but missing values, as the first row of a table may."""
+        cells = self._padded(line)
+        return (
+            any(map(has_number, cells))
+            and all(has_number(cell) or is_missing(cell) for cell in cells)
+            and not _are_units(cells)
+        )
+
     def _with_others(self, lines: Sequence[Line], stack: Sequence[int]) -> Self:
         """Return the heading with the units and labels that other lines of the stack give."""
         units: tuple[str, ...] = ()
@@ -176,7 +185,8 @@ def _best(
     if not fitting:
         return None
     best = max(fitting, key=lambda each: (not _are_units(each.names), each.known, sum(map(bool, each.names)), -each.at))
-    return best._with_others(lines, stack)
+    first = next((i for i in stack if i > best.at and best.holds_numbers(lines[i])), below)
+    return replace(best._with_others(lines, [i for i in stack if i < first]), below=first)
 
 
 def _separators(line: Line) -> tuple[str, ...]:
