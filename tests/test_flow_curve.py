@@ -63,7 +63,7 @@ def test_values_that_allow_no_law_are_refused(subtests):
         ),
         ("nan", RATE, np.full(25, np.nan), "viscosity holds nan"),
         ("shapes", RATE, RATE[:5], "as many numbers"),
-        ("text", RATE, "water", "arrays of numbers"),
+        ("text", RATE, "water", "viscosity = 'water' is not made of real numbers"),
     ):
         with subtests.test(name=name), pytest.raises(sb.InputError, match=sentence):
             sb.fluids.flow_curve(rate, viscosity)

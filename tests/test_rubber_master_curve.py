@@ -206,11 +206,11 @@ def test_impossible_curves_are_refused(subtests, tmp_path):
     storage, loss = moduli()
     fluid = OMEGA * 1e-3
     for arguments, words in (
-        ((np.log10(OMEGA), storage, loss), "a logarithm"),
+        ((np.log10(OMEGA), storage, loss), "Is it a logarithm"),
         ((OMEGA, storage, -loss), "loss modulus holds -.*, value 1 of 31"),
         ((OMEGA[:4], storage[:4], loss[:4]), "4 different frequencies"),
         ((OMEGA, storage[1:], loss), "shape"),
-        (("a", "b", "c"), "arrays of numbers"),
+        (("a", "b", "c"), "not made of real numbers"),
         ((OMEGA, fluid**2 / (1 + fluid**2), fluid / (1 + fluid**2)), "no relaxed modulus"),
     ):
         with subtests.test(words=words), pytest.raises(sb.InputError, match=words):

@@ -73,9 +73,9 @@ def si_factor(unit: str, dimension: str, name: str) -> float:
         return 2 * math.pi
     if dimension == "viscosity":
         text = re.sub("(?<=Pa)s$", "*s", text)  # mPas, as rheometers write it, can be nothing else
-    if dimension == "number" and text not in BARE:
-        raise InputError(f"{name} = {show(text)}; the column holds bare numbers, or numbers in %.")
     if dimension == "number":
+        if text not in BARE:
+            raise InputError(f"{name} = {show(text)}; the column holds bare numbers, or numbers in %.")
         return BARE[text]
     return to_si(f"1 {text}", dimension, name)
 
@@ -106,23 +106,19 @@ class Column:
         known = (unit in self.units) if self.units is not None else has_dimension(unit, self.dimension)
         return len(names) == 1 and (known if unit else self.is_bare or self.dimension == "number")
 
-    def factor(self, name: str, unit: str, where: str) -> float:
-        """Return the SI value of a unit."""
-        if not unit and self.is_bare:
-            return 1.0
-        if self.units is None:
-            return si_factor(unit, self.dimension, f"{where}: unit")
-        if unit not in self.units:
-            raise InputError(f"{where}: the unit {show(unit)} of the {name} is not one of {', '.join(self.units)}.")
-        return self.units[unit]
-
-    def numbers(self, table: TextTable, header: str, name: str, *, gaps: bool) -> tuple[Array, set[str]]:
+    def numbers(self, table: TextTable, header: str, *, gaps: bool) -> tuple[Array, set[str]]:
         """Return its numbers in SI units, and their units in the file."""
         units = set[str]()
 
         def factor(unit: str, where: str) -> float:
             units.add(unit)
-            return self.factor(name, unit, where)
+            if not unit and self.is_bare:
+                return 1.0
+            if self.units is None:
+                return si_factor(unit, self.dimension, f"{where}: unit")
+            if unit not in self.units:
+                raise InputError(f"{where}: the unit {show(unit)} is not one of {', '.join(self.units)}.")
+            return self.units[unit]
 
         return table.numbers_of(header, factor, gaps=gaps), units
 
@@ -176,7 +172,7 @@ def read_columns(path: PathLike, advice: str, *choices: Mapping[str, Column], ga
             raise InputError(f"{file}: the header is {show(', '.join(table.header))}, {said}; {advice}.")
         if not gaps:  # who makes something of the whole table has no notes
             decimal_of(thousands_in(table.column(headers[0])), ".", file, f"column {show(headers[0])}")
-        found[name], units[name] = column.numbers(table, headers[0], name, gaps=gaps)
+        found[name], units[name] = column.numbers(table, headers[0], gaps=gaps)
         taken[name] = headers[0]
         if column.is_bare and not unit:
             bare.append(f"{show(headers[0])} was read in {IN_WORDS[column.dimension]}, as its header has no unit.")

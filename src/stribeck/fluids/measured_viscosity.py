@@ -32,7 +32,7 @@ from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.schema import numbers_of
-from stribeck.quantities.units import InputError, RowError, show
+from stribeck.quantities.units import InputError, positive_columns, show
 
 __all__ = ["FlowCurve", "flow_curve", "read_flow_curve"]
 
@@ -220,22 +220,10 @@ def read_flow_curve(path: str | os.PathLike[str], *, law: str | None = None) -> 
 
 def _checked(rate: Any, viscosity: Any) -> tuple[Array, Array]:
     """Return rates, rising, and viscosities."""
-    try:
-        x, y = np.array(rate, dtype=float), np.array(viscosity, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError("rate and viscosity must be arrays of numbers, in 1/s and Pa s.") from None
-    if x.ndim != 1 or x.shape != y.shape:
-        raise InputError(f"rate of shape {x.shape} and viscosity of shape {y.shape}; give two rows of as many numbers.")
-    for name, values in (("rate", x), ("viscosity", y)):
-        wrong = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
-        if wrong.size:
-            advice = " Leave out rest, and the sign of the direction." if name == "rate" else ""
-            text = f"{name} holds {values[wrong[0]]:g}, {{row}}; all values must be finite and above zero.{advice}"
-            raise RowError(text, int(wrong[0]), f"value {wrong[0] + 1} of {values.size}")
+    advice = {"rate": " Leave out rest, and the sign of the direction."}
+    x, y = positive_columns({"rate": rate, "viscosity": viscosity}, advice)
     if np.unique(x).size < MIN_VALUES:
         raise InputError(f"viscosity at {np.unique(x).size} different rates; a law needs {MIN_VALUES} or more.")
-    order = np.argsort(x)
-    x, y = x[order], y[order]
     (slope, _), covariance = np.polyfit(np.log(x), np.log(y), 1, cov=True)
     if slope > MAX_RISE * math.sqrt(covariance[0, 0]) and slope > NO_SCATTER:
         raise InputError(

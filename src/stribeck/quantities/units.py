@@ -9,9 +9,10 @@ import functools
 import math
 import numbers
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -320,3 +321,23 @@ def real_array(name: str, value: Any) -> Array:
         raise InputError(f"{name} = {show(value)} is not made of real numbers; give a number or an array of them.")
     with np.errstate(over="ignore"):
         return found.astype(np.float64)
+
+
+def positive_columns(columns: Mapping[str, Any], advice: Mapping[str, str] = MappingProxyType({})) -> list[Array]:
+    """Return columns of as many numbers above zero, in the order of the first; a refusal adds the advice on a column."""
+    import numpy as np  # not for a command that only shows its help
+
+    found = {name: real_array(name, values) for name, values in columns.items()}
+    shapes = [each.shape for each in found.values()]
+    if len(shapes[0]) != 1 or len(set(shapes)) > 1:
+        said = listed(f"{name} of shape {each.shape}" for name, each in found.items())
+        raise InputError(f"{said}; give columns of as many numbers.")
+    for name, values in found.items():
+        wrong = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
+        if wrong.size:
+            text = (
+                f"{name} holds {values[wrong[0]]:g}, {{row}}; all values must be finite and above zero.{advice.get(name, '')}"
+            )
+            raise RowError(text, int(wrong[0]), f"value {wrong[0] + 1} of {values.size}")
+    order = np.argsort(found[next(iter(found))], kind="stable")
+    return [values[order] for values in found.values()]

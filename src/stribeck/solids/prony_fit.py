@@ -27,7 +27,7 @@ from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.schema import Input
-from stribeck.quantities.units import InputError, RowError, show
+from stribeck.quantities.units import InputError, positive_columns, show
 from stribeck.solids.viscoelastic import MAX_TERMS, Prony
 
 __all__ = ["PronyFit", "fit_prony", "from_master_curve"]
@@ -322,21 +322,8 @@ def _fitted(omega: Array, moduli: Array, times: Array) -> Array:
 
 def _checked(frequency: Any, storage: Any, loss: Any) -> tuple[Array, Array]:
     """Return frequencies, rising, and both moduli in rows."""
-    try:
-        omega, *moduli = (np.array(each, dtype=float) for each in (frequency, storage, loss))
-    except (TypeError, ValueError):
-        raise InputError("frequency, storage and loss must be arrays of numbers, in rad/s and Pa.") from None
-    if omega.ndim != 1 or any(each.shape != omega.shape for each in moduli):
-        shapes = ", ".join(str(each.shape) for each in moduli)
-        raise InputError(f"frequency of shape {omega.shape} and moduli of shape {shapes}; give three rows of as many numbers.")
-    for name, values in zip(("frequency", "storage modulus", "loss modulus"), (omega, *moduli), strict=True):
-        wrong = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
-        if wrong.size:
-            first = values[wrong[0]]
-            logarithm = " (a logarithm? give the frequency itself)" if name == "frequency" and first <= 0 else ""
-            text = f"{name} holds {first:g}, {{row}}{logarithm}; all values must be finite and above zero."
-            raise RowError(text, int(wrong[0]), f"value {wrong[0] + 1} of {values.size}")
+    advice = {"frequency": " Is it a logarithm? Give the frequency itself."}
+    omega, *moduli = positive_columns({"frequency": frequency, "storage modulus": storage, "loss modulus": loss}, advice)
     if np.unique(omega).size < MIN_VALUES:
         raise InputError(f"moduli at {np.unique(omega).size} different frequencies; a series needs {MIN_VALUES} or more.")
-    order = np.argsort(omega, kind="stable")
-    return omega[order], np.array(moduli)[:, order]
+    return omega, np.array(moduli)
