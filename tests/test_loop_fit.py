@@ -46,6 +46,14 @@ def test_boundary_friction_comes_out_of_a_loop_over_position(case, tmp_path):
     assert axes.get_xlabel() == "position (mm)"
 
 
+def test_an_input_that_ends_at_its_bound_is_named(case, tmp_path):
+    path = loop_of(tmp_path / "loop.csv", sb.load_case(case).contact.replace(boundary_friction=0.5))
+    case.write_text(case.read_text() + '\n[fit]\nfree = ["boundary_friction"]\nbounds.boundary_friction = [0.6, 0.9]\n')
+    found = sb.bench.fit_loop(path, case)
+    assert "ended at a bound" in str(found)
+    assert "boundary_friction ended at its bound 0.6: the data would move it further" in found.notes[0]
+
+
 def test_a_zero_of_the_force_that_is_off_is_found_with_the_inputs(case, tmp_path):
     path = loop_of(tmp_path / "loop.csv", sb.load_case(case).contact.replace(boundary_friction=0.5), "time [s]")
     (plain,) = sb.bench.fit_loop(path, case, free=["boundary_friction"]).inputs

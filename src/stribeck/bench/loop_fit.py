@@ -27,7 +27,7 @@ from stribeck.fits.least_squares import Minimum, Objective, settle
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.model import Prediction
 from stribeck.fits.repeats import CLEAR, memory
-from stribeck.fits.result import FitOutcome, FittedInput, WithFittedInputs, unit_of
+from stribeck.fits.result import FitOutcome, FittedInput, WithFittedInputs, notes_of_inputs, outcome_of_inputs, unit_of
 from stribeck.motions.motion import Motion
 from stribeck.quantities.formats import format_percent
 from stribeck.quantities.results import ByValue, Card, Told
@@ -370,7 +370,7 @@ def _result(model: _LoopModel, at: Minimum, zero: str) -> LoopFit:
         unit, dimension = unit_of(free.name, False), model.contact.INPUTS.rows[free.name].dimension
         value = free.value(theta)
         inputs.append(FittedInput(free.name, None, value, unit, free.start, False, error, narrow, wide, bound, dimension))
-    notes = [*model.data.notes, *filter(None, [zero])]
+    notes = [*notes_of_inputs(inputs), *model.data.notes, *filter(None, [zero])]
     if model.left_out:
         notes.append(f"{model.left_out} rows slower than a tenth of the largest speed left out.")
     against = int((model.motion.speed(model.phase) * model.data.friction < 0).sum())
@@ -378,7 +378,7 @@ def _result(model: _LoopModel, at: Minimum, zero: str) -> LoopFit:
         notes.append(f"In {against} of {n} rows friction has the sign of the other way: does time begin with the motion?")
     if np.any(np.abs(moved) > scatter):
         notes.append("Half of the time steps move the inputs by more than the noise does: ask for more steps.")
-    outcome = FitOutcome.AT_BOUND if at.at_bound.any() else FitOutcome.CONVERGED if at.ended else FitOutcome.STEP_LIMIT
+    outcome = outcome_of_inputs(inputs) if at.ended else FitOutcome.STEP_LIMIT
     found = model.at(places, 2 * model.steps)
     by_asperities, by_fluid, *of_parts = model.at_rows(found)
     friction, error_of_rows = by_asperities + by_fluid, of_parts[0] + of_parts[1]

@@ -353,20 +353,18 @@ def outcome_of(at: Minimum, inputs: Sequence[FittedInput]) -> FitOutcome:
     """Return how a fit ended."""
     if not at.converged:
         return FitOutcome.NOT_AT_OPTIMUM if at.ended else FitOutcome.STEP_LIMIT
+    return outcome_of_inputs(inputs)
+
+
+def outcome_of_inputs(inputs: Sequence[FittedInput]) -> FitOutcome:
+    """Return how a fit ended whose minimum was found."""
     if any(_implausible(each) for each in inputs):
         return FitOutcome.IMPLAUSIBLE
     return FitOutcome.AT_BOUND if any(each.at_bound for each in inputs) else FitOutcome.CONVERGED
 
 
-def notes_of(
-    at: Minimum,
-    inputs: Sequence[FittedInput],
-    correlation: Array,
-    covariance: Array,
-    weak: Sequence[Unidentifiable],
-    contacts: Sequence[Contact],
-) -> list[str]:
-    """Return the sentences on a fit."""
+def notes_of_inputs(inputs: Sequence[FittedInput]) -> list[str]:
+    """Return the sentences on inputs whose values are not estimates."""
     notes = []
     for each in inputs:
         if each.at_bound:
@@ -379,6 +377,19 @@ def notes_of(
                 f"{each.label} {each.value:.2g} is larger than that of any known contact: the data do not reach the boundary "
                 "plateau, or other inputs are wrong. Give it a bound or a prior in [fit], or do not free it."
             )
+    return notes
+
+
+def notes_of(
+    at: Minimum,
+    inputs: Sequence[FittedInput],
+    correlation: Array,
+    covariance: Array,
+    weak: Sequence[Unidentifiable],
+    contacts: Sequence[Contact],
+) -> list[str]:
+    """Return the sentences on a fit."""
+    notes = notes_of_inputs(inputs)
     named = {name for each in weak for name in each.names}
     for i in range(len(inputs)):
         for j in range(i):
