@@ -185,6 +185,9 @@ def test_text_below_the_numbers_of_a_file_is_named_where_a_fit_reads_it_and_refu
     moduli = (f"{x:g};{1 + x / (1 + x)};{x / (1 + x**2)}" for x in np.geomspace(0.01, 100, 20))
     found = sb.solids.from_master_curve(written("frequency [rad/s];E' [MPa];E'' [MPa]", *moduli))
     assert found.notes[0] == "1 row below the numbers left out: 22."
+    one = "\n".join(("rate [1/s];viscosity [Pa s]", *(f"{x};1.5" for x in RATE)))
+    found = sb.fluids.read_flow_curve(written(one, "", "Interval 2", one))
+    assert found.rate.size == 2 * RATE.size and "2 tables with the same header were read as one." in found.notes
     law = written("separation,pressure", *(f"{x},{np.exp(-x)}" for x in range(5)))
     with pytest.raises(sb.InputError, match="no numbers of the table above in row 7; take text out"):
         sb.contact_laws.TableLaw.read(law)

@@ -233,6 +233,7 @@ VARIATIONS = {
     "a standard deviation of a force": table("speed [mm/s];COF;SD [N]", speed, friction, lambda u, mu: 3.0),
     "a speed of rotation beside the speed": table("RPM;speed [mm/s];COF", lambda u, mu: 3 * u, speed, friction),
     "two names of one column": table("mu;speed [mm/s];friction", friction, speed, friction),
+    "forces in pounds": table("speed [mm/s];Fx [lbf];load [lb]", speed, lambda u, mu: 2 * mu, lambda u, mu: 2),
     "forces in grams": table("speed [mm/s];Fx [g];Fz [g]", speed, lambda u, mu: 200 * mu, lambda u, mu: -200),
     "forces in their own unit": table("speed [mm/s];Fx [mN];Fz [N]", speed, lambda u, mu: 2e3 * mu, lambda u, mu: 2),
     "a prefix of the channel": table("DAQ.Speed (mm/s);DAQ.COF ()", speed, friction),

@@ -22,7 +22,7 @@ from stribeck.files.cells import (
     split_header,
     thousands_in,
 )
-from stribeck.files.table_reading import read_table
+from stribeck.files.table_reading import STEP_HEADER, read_table
 from stribeck.files.text_table import TextTable
 from stribeck.files.writing import PathLike, path_of
 from stribeck.quantities.units import InputError, RowError, show, to_si
@@ -35,7 +35,7 @@ IN_WORDS = {"time": "seconds", "length": "metres"}  # SI units of columns that m
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
 
-_MASS = re.compile(r"(?:[mk]?g|gram|gr)f?")
+_MASS = re.compile(r"(?:[mk]?g|gram|gr|lb)f?")
 _TURNS = re.compile(r"(?:r\.?p\.?m\.?|rev(?:olutions)?/min|U/min|1/min|/min|min\^?[-−]1|min⁻¹)", re.IGNORECASE)
 _TURNS_PER_SECOND = re.compile(r"(?:rps|rev/s|U/s|1/s|Hz|s\^?[-−]1|s⁻¹)")
 
@@ -65,8 +65,7 @@ def si_factor(unit: str, dimension: str, name: str) -> float:
     """Return the SI value of a unit; grams press as their weight, and turns are of a shaft."""
     text = unit.strip()
     if dimension == "force" and _MASS.fullmatch(text):
-        power = {"m": 1e-6, "k": 1.0}.get(text[0], 1e-3)
-        return power * STANDARD_GRAVITY
+        return {"m": 1e-6, "k": 1.0, "l": 0.45359237}.get(text[0], 1e-3) * STANDARD_GRAVITY
     if dimension == "rotation" and _TURNS.fullmatch(text):
         return 2 * math.pi / 60
     if dimension == "rotation" and _TURNS_PER_SECOND.fullmatch(text):
@@ -179,6 +178,8 @@ def read_columns(path: PathLike, advice: str, *choices: Mapping[str, Column], ga
     whole = ~np.isnan(list(found.values())).any(axis=0)
     empty = rows_listed(np.array(table.numbers)[~whole])
     notes = [*table.notes, *table.thousands_noted([*taken.values()]), *bare]
+    if STEP_HEADER in table.header:
+        notes.append(f"{len(set(table.column(STEP_HEADER)))} tables with the same header were read as one.")
     notes += [f"Rows with an empty cell left out: {empty}."] if empty else []
     places = tuple(np.array(table.numbers)[whole].tolist())
     in_si = {name: values[whole] for name, values in found.items()}
