@@ -752,7 +752,7 @@ def test_the_curve_and_its_transitions_are_those_of_the_solver(answer):
 
 
 def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marked_stale():
-    heavy = inputs.from_case(sb.load_case("examples/nitrile_seal.toml"))
+    heavy = inputs.from_case(sb.load_case(EXAMPLES / "nitrile_seal.toml"))
     model = Answerer()
     first = model(heavy)
     assert first.curve is None and first.diagram is None
@@ -799,7 +799,7 @@ def test_a_contact_at_the_end_of_double_precision_has_no_curve_and_says_why():
 
 @pytest.mark.slow
 def test_the_solved_curve_of_a_ball_is_within_a_per_cent_of_its_states_between_its_points():
-    ball = sb.load_case("examples/rubber_ball.toml").contact.replace(cavitation="none", cavity_pressure=0.0)
+    ball = sb.load_case(EXAMPLES / "rubber_ball.toml").contact.replace(cavitation="none", cavity_pressure=0.0)
     shown = curves.solved_curve(ball, "balanced", always)
     for i in (20, 58, 71, 84):
         exact = sb.solve(ball.replace(speed=float(shown.speed[i])), rtol=1e-4).friction().total

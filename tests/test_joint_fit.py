@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from command_line import CONTACT, call, toml_of
+from command_line import CONTACT, EXAMPLES, call, toml_of
 from fit_data import TRUE, exact, measured
 
 import stribeck as sb
@@ -150,7 +150,7 @@ def test_a_file_counts_once_and_a_copy_of_it_is_named(tmp_path):
 
 def test_files_without_errors_take_those_of_the_case_beside_files_with_them():
     with_errors, without = (measured([1e-3, 1e-2], [0.5, 0.3], error) for error in (0.02, None))
-    settings = sb.load_case("examples/pdms_cylinder.toml").fit
+    settings = sb.load_case(EXAMPLES / "pdms_cylinder.toml").fit
     with pytest.raises(sb.InputError, match="has no errors of friction, and .* has; give relative_error or absolute_error"):
         sb.read_measurements([with_errors, without], settings)
     both = sb.read_measurements([with_errors, without], dataclasses.replace(settings, relative_error=0.1, absolute_error=0.04))

@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from command_line import call, case_text
+from command_line import EXAMPLES, call, case_text
 
 import stribeck as sb
 
@@ -111,7 +111,7 @@ def test_intervals_of_loops_cover_the_truth(case, tmp_path):
 
 @pytest.mark.slow
 def test_a_shear_stress_comes_out_of_a_loop_in_the_place_of_a_coefficient(tmp_path):
-    seal = sb.load_case("examples/rod_seal.toml").contact.replace(shear_stress="0.2 MPa")
+    seal = sb.load_case(EXAMPLES / "rod_seal.toml").contact.replace(shear_stress="0.2 MPa")
     motion = sb.motions.Sine(20e-3, 0.5)
     path = loop_of(tmp_path / "loop.csv", seal, motion=motion)
     found = sb.bench.fit_loop(path, seal.replace(shear_stress="0.3 MPa"), motion, free=["shear_stress"], steps=24)
@@ -137,7 +137,7 @@ def test_what_is_no_loop_is_refused(subtests, capsys, case, tmp_path):
 def test_a_loop_needs_a_motion_that_repeats(tmp_path):
     path = tmp_path / "loop.csv"
     path.write_text("time [s],friction\n0,0.1\n1,-0.2\n")
-    contact = sb.load_case("examples/pdms_cylinder.toml").contact
+    contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact
     with pytest.raises(sb.InputError, match="the motion is missing"):
         sb.bench.fit_loop(path, contact)
     with pytest.raises(sb.InputError, match="does not repeat"):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from command_line import call
+from command_line import EXAMPLES, call
 
 import stribeck as sb
 
@@ -53,7 +53,7 @@ def test_the_stated_misfit_is_that_of_the_values_and_of_what_lies_between(subtes
 
 
 def test_a_solved_contact_takes_the_series():
-    contact = sb.load_case("examples/pdms_cylinder.toml").contact
+    contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact
     found = sb.solids.fit_prony(OMEGA, *moduli())
     body = sb.solids.Prony([1e-4, 1e-2], [2.0, 1.0])
     contact = contact.replace(modulus=RELAXED / 0.75)

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from command_line import EXAMPLES
 
 import stribeck as sb
 
@@ -135,7 +136,7 @@ def test_a_motion_that_stays_at_one_speed_stays_in_its_steady_state(change):
 
 def test_asperities_that_rub_by_a_shear_stress_do_so_over_their_area_at_each_instant():
     """At one speed as in steady sliding; and with it the friction is a factor on that of a stress of one size."""
-    seal = sb.load_case("examples/rod_seal.toml").contact.replace(cavitation="none")
+    seal = sb.load_case(EXAMPLES / "rod_seal.toml").contact.replace(cavitation="none")
     one, fast = (seal.replace(shear_stress="0.2 MPa", speed_exponent=n, reference_speed=seal.speed) for n in (0.0, 0.5))
     slow = 0.2 * seal.speed
     found = sb.stroke(fast, sb.motions.Table([0, 1e-3], [slow, slow]), steps=16)
