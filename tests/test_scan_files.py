@@ -304,6 +304,11 @@ def test_a_line_without_a_height_in_a_column_is_a_gap_and_moves_no_other_point(s
         with subtests.test(between=between), pytest.raises(sb.InputError, match="line 52, between heights, holds none"):
             read(tmp_path, "\n".join(["z [um]", *lines]), spacing="0.156 um")
     assert read(tmp_path, "z [um]\n\n" + text.replace("\n", "\n\n"), spacing="0.156 um").heights.size == 400
+    for between in ("", "\t" * 47, "# a remark"):
+        lines = matrix().splitlines()
+        lines.insert(5, between)
+        with subtests.test(between=between), pytest.raises(sb.InputError, match="line 6, between heights, holds none"):
+            read(tmp_path, "\n".join([*lines, "", "\t" * 47]), unit="um", spacing="1 um")
     blocks = "\n\n".join("\n".join(f"{v:.4f}" for v in row) for row in MAP)
     scan = read(tmp_path, f"Samples/line: 48\nLines: 48\nUnit: um\n{blocks}", spacing="1 um")
     assert scan.heights.shape == (48, 48)

@@ -109,7 +109,13 @@ def _without_positions(path: Path, table: _Table, spacing: Spacing, z_factor: fl
     if values.shape[1] > 1:
         values, found = _without_edges(path, table, unit, notes)
     # A row of the file is a line of the scan, and the first axis is along it.
-    z = _in_lines(path, values[:, 0], table, notes) if values.shape[1] == 1 else values.T
+    z = _in_lines(path, values[:, 0], table.header, notes) if values.shape[1] == 1 else values.T
+    jumps = np.diff(table.lines)
+    if (z.ndim == 1 or values.shape[1] > 1) and np.unique(jumps).size > 1:  # what stands behind would move up
+        line = table.lines[int(np.argmax(jumps != np.bincount(jumps).argmax()))] + 1
+        raise InputError(
+            f"{path}: line {line}, between heights, holds none; write nan where points are missing, or take it out."
+        )
     found = found[: z.ndim]
     if not any(found):
         found = table.header.spacing(path, z.shape)
@@ -135,16 +141,10 @@ def _without_positions(path: Path, table: _Table, spacing: Spacing, z_factor: fl
     return Topography(z * z_factor, tuple(steps), source=path.name, notes=tuple(notes))
 
 
-def _in_lines(path: Path, z: Array, table: _Table, notes: list[str]) -> Array:
+def _in_lines(path: Path, z: Array, header: Header, notes: list[str]) -> Array:
     """Return heights of one column as the map whose samples per line and lines are declared above them, if they are."""
-    samples, lines = table.header.samples, table.header.lines
+    samples, lines = header.samples, header.lines
     if samples is None or (lines is None and samples[0] == z.size):
-        apart = np.diff(table.lines)
-        if np.unique(apart).size > 1:
-            line = table.lines[int(np.argmax(apart != apart[0]))] + 1
-            raise InputError(
-                f"{path}: line {line}, between heights, holds none; write nan where a point is missing, or remove it."
-            )
         return z
     if lines is None or samples[0] * lines[0] != z.size:
         said = show(samples[1]) + (f" and {show(lines[1])}" if lines else " and no number of lines, as in 'Lines: 64'")
