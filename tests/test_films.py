@@ -257,6 +257,13 @@ def test_where_the_fits_of_sliding_flow_do_not_meet_the_mesh_resolves_it_and_the
     assert found.flux_gap == pytest.approx(exact.flux_gap, rel=found.error_estimate)
 
 
+def test_the_share_of_the_fluid_errs_by_no_more_than_is_stated_though_its_own_terms_hardly_change():
+    groups, fluid = sb.Groups(2610.3, 3.0087e-6, 3.8429e-4), sb.fluids.PowerLaw(1448.6, 0.8163)
+    found, exact = (sb.solve(groups, rtol=rtol, fluid=fluid, slide_to_roll=0.0, cavitation="exit") for rtol in (1e-3, 1e-6))
+    assert abs(found.fluid_load_share - exact.fluid_load_share) <= found.errors["fluid_load_share"]
+    assert found.errors["fluid_load_share"] == found.errors["contact_load_share"]  # they sum to one
+
+
 # --- limits ---
 
 

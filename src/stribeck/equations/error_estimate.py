@@ -268,6 +268,8 @@ def error_estimate(state: State, observed: Observables, fine: FineOperators) -> 
     discretisation = DEFECT_SAFETY * effects[0]
     if u.exit is not None:
         of_place += float((discretisation + rounding)[ROW["exit_position"]])
+    for part in (discretisation, rounding):  # shares sum to one, so that they err alike
+        part[SHARE_ROWS] = part[SHARE_ROWS].max()
     missing = np.isnan(values)
     missing[: len(NAMES)] = False
     for part in (discretisation, interpolation, rounding):
