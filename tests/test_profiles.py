@@ -312,11 +312,11 @@ def test_a_shape_from_its_pressure_has_that_contact():
     assert "41 points from -1 to 1 m" in repr(sb.profiles.Table(x, x**2))
 
 
-def test_a_table_of_a_shape_is_that_shape(tmp_path):
+def test_a_table_of_a_shape_is_that_shape_wherever_its_heights_are_counted_from(tmp_path):
     x = np.linspace(-2e-3, 2e-3, 401)
     worn = sb.profiles.Worn("10 mm", "2 um")
     (tmp_path / "worn.csv").write_text(
-        "x [mm], z [um]\n" + "\n".join(f"{1e3 * a:.17g}, {1e6 * b:.17g}" for a, b in zip(x, worn.gap(x), strict=True))
+        "x [mm], z [um]\n" + "\n".join(f"{1e3 * a:.17g}, {1e6 * b - 1000:.17g}" for a, b in zip(x, worn.gap(x), strict=True))
     )
     table = sb.profiles.Table(str(tmp_path / "worn.csv"))
     by_table, by_formula = (sb.solve(sb.LineContact(profile=shape, **CONTACT), rtol=1e-5) for shape in (table, worn))

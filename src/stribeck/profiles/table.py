@@ -37,7 +37,7 @@ class Table(Shape):
         Positions along the contact, ascending [m]; or the name of a CSV file with a column of positions, ascending or
         descending, and one of heights, both with units in their headings.
     z : array_like, optional
-        Heights of the body's surface above the plane that it touches [m].
+        Heights of the body's surface, whatever they are counted from [m].
     reversed : bool
         Whether the contact moves the other way.
 
@@ -87,7 +87,8 @@ class Table(Shape):
     def _spline(self) -> Any:
         from scipy.interpolate import CubicSpline  # slow to import, and most contacts have no such shape
 
-        return CubicSpline(self.x, self.z)
+        # From the lowest one: far away every gap goes over into that of a cylinder that touches the same plane.
+        return CubicSpline(self.x, np.array(self.z) - min(self.z))
 
     def gap(self, x: Array) -> Array:
         """Return the gap [m]."""
