@@ -302,6 +302,7 @@ def test_lambda_ratio_is_the_minimum_film_over_the_rms_height_and_knows_alpha(so
     assert state.lambda_ratio == pytest.approx(film / contact.roughness, rel=1e-12)
     alone = solved(*TYPICAL["mixed"])  # groups hold no alpha: in h_rms/alpha
     assert alone.lambda_ratio == pytest.approx(alone.minimum_gap / 1e-3, rel=1e-14)
+    assert "minimum film over h_rms/alpha" in str(alone) and "minimum film over h_rms)" in str(state)
 
 
 def test_contacts_too_wide_for_a_half_space_are_noted(subtests):

@@ -153,6 +153,8 @@ def _observables(solution: Any) -> Iterator[Number]:
         sign = HERTZ_SIGNS.get(row.scale, "")
         meaning = row.meaning + UNIT_SUFFIXES[row.scale]
         label = "" if row.name.endswith(("_estimate", "_error")) else row.label
+        if not factors:  # groups hold no alpha
+            label = label.replace("h_rms", "h_rms/alpha")
         is_position = row.scale == "width"
         if row.name == "minimum_angle":
             yield Number(row.name, label, meaning, value, error, sign="°", factor=180 / math.pi)
