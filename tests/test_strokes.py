@@ -266,6 +266,7 @@ def test_a_stroke_is_a_dataset_and_a_picture(tmp_path):
     data = found.to_dataset()
     assert data.friction.attrs["long_name"] and set(data.friction.dims) == {"time"}
     assert float(data.work) == found.work
+    assert "of the last cycle, 160 steps" in str(found)
     loop, films = found.plot(tmp_path / "stroke.png").axes
     assert loop.get_xlabel() == "position (mm)" and 4 < loop.get_xlim()[1] < 5  # of 8 mm
     assert films.get_ylabel() == "film (nm)" and films.get_ylim()[1] > 100

@@ -99,7 +99,7 @@ class Stroke(Exported, Told, ByValue):
             ("work of friction per length", f"{self.work:.4g} ± {self.work_error:.1g} J/m"),
         ]
         of = "the last cycle" if self.motion.repeats else "the motion"
-        return Card(f"friction and films of {of}, {len(self.time) - 1} steps", rows, self.notes)
+        return Card(f"friction and films of {of}, {len(self.time[last]) - 1} steps", rows, self.notes)
 
     def _labelled(self) -> Labelled:
         names = (*self.errors, "speed", "position")
