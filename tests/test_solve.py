@@ -305,6 +305,17 @@ def test_lambda_ratio_is_the_minimum_film_over_the_rms_height_and_knows_alpha(so
     assert "minimum film over h_rms/alpha" in str(alone) and "minimum film over h_rms)" in str(state)
 
 
+def test_the_stated_error_of_the_offset_holds_where_it_crosses_zero(subtests):
+    """It had been that of films beside it, times the offset, which may be any small number."""
+    inputs = {"radius": 0.01, "modulus": 2.7e6, "viscosity": 0.05, "roughness": 1e-6, "alpha": 2, "beta": 0.06}
+    for kind, load, speed in ((sb.LineContact, 30.0, 0.104077), (sb.PointContact, 0.5, 36.49)):
+        with subtests.test(kind=kind.__name__):
+            contact = kind(load=load, speed=speed, boundary_friction=0.7, **inputs)
+            coarse, fine = (sb.solve(contact, rtol=rtol).to_dict() for rtol in (1e-2, 1e-5))
+            for name in ("offset", "undeformed_height"):
+                assert abs(fine[name] - coarse[name]) < coarse[f"{name}_error"], name
+
+
 def test_contacts_too_wide_for_a_half_space_are_noted(subtests):
     for modulus, wide in [(4.5e4, False), (4e4, True)]:
         with subtests.test(modulus=modulus, wide=wide):

@@ -256,7 +256,7 @@ def error_estimate(state: State, observed: Observables, fine: FineOperators) -> 
     scales[POSITION_ROWS] = np.maximum(1.0, scales[POSITION_ROWS])
     scales[DRAG_ROWS] = drag_scales(values)
     scales[SHARE_ROWS] = 1.0
-    scales[ROW["offset"]] = max(scales[ROW["offset"]], FLOOR)
+    scales[ROW["offset"]] = max(scales[ROW["offset"]], scales[ROW["central_gap"]])
     if not equations.is_sliding:
         scales[GAP_ROWS] = np.maximum(scales[GAP_ROWS], FLOOR * equations.law.decay_length)
     scales[scales == 0] = 1.0

@@ -65,7 +65,7 @@ SIGN_PATTERNS = 5  # Patterns of signs of rounding errors: their mean square is 
 MAX_AMPLIFICATION = 1.0 / NEGLIGIBLE
 
 # Tolerances of the promise.
-FLOOR = 1e-3  # Value below which the error of what crosses zero, the offset or a gap at rest, is not relative to it
+FLOOR = 1e-3  # Gap at rest over kappa below which its error is not relative to it
 MIN_RTOL, MIN_RTOL_OF_BALLS, MAX_RTOL = 1e-11, 1e-8, 1e-2  # Tolerances that may be asked for
 MINIMUM_RTOL_FACTOR = 1000.0  # That of the minimum film of a ball over rtol; with less, side lobes ask for many more angles
 

@@ -55,7 +55,7 @@ class LineStates:
         found = np.abs(values)
         found[:, SHARE_COLUMNS] = 1.0
         found[:, ROW["exit_position"] :] = 1.0
-        found[:, ROW["offset"]] = np.maximum(found[:, ROW["offset"]], NEGLIGIBLE)
+        found[:, ROW["offset"]] = np.maximum(found[:, ROW["offset"]], found[:, ROW["central_gap"]])
         found[:, DRAG_ROWS] = drag_scales(values)
         if not self.moves:
             kappa = np.array([float(self.groups_at(c).relative_roughness) for c in s.tolist()])

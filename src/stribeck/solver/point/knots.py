@@ -15,7 +15,7 @@ from stribeck.equations.point.observables import MINIMA, OBSERVABLES, WITHIN, id
 from stribeck.equations.point.system import Equations, Unknowns
 from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.hermite import weights_through
-from stribeck.numerics.settings import HALF_DIGITS, LOG_STEP, MAX_AMPLIFICATION, MIN_LOG_STEP, NEGLIGIBLE, SHARE
+from stribeck.numerics.settings import HALF_DIGITS, LOG_STEP, MAX_AMPLIFICATION, MIN_LOG_STEP, SHARE
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import AREA
@@ -42,7 +42,7 @@ ONE_SIGNED = [OBSERVABLES[i] for i in SHARES] + [
 ]
 SUMMANDS = ((OBSERVABLES.index("J_pcx"), OBSERVABLES.index("J_published")),)
 ABSOLUTE = [COLUMNS.index(name) for name in UNIT_SCALED]
-OFFSET = COLUMNS.index("offset")
+OFFSET, CENTRAL_GAP = COLUMNS.index("offset"), COLUMNS.index("central_gap")
 WHOLE = [COLUMNS.index(name) for name in ("J_balanced", "J_published")]
 FRICTION = [i for i, name in enumerate(COLUMNS) if name.startswith("J_") or name in WITHIN]
 
@@ -100,7 +100,7 @@ class BallKnots:
         """Return the scales of the errors of observables, as for a state."""
         found = np.fmax(np.abs(values), np.finfo(float).tiny)
         found[:, ABSOLUTE] = 1.0
-        found[:, OFFSET] = np.maximum(found[:, OFFSET], NEGLIGIBLE)  # it crosses zero where films become thick
+        found[:, OFFSET] = np.maximum(found[:, OFFSET], found[:, CENTRAL_GAP])  # it crosses zero where films become thick
         whole = np.abs(values[:, WHOLE]).max(axis=1)
         found[:, FRICTION] = np.maximum(np.fmax(whole, np.finfo(float).tiny), self._speeds(s))[:, None]
         return found
