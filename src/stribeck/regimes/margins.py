@@ -33,6 +33,7 @@ from stribeck.curves.stribeck_curve import begun
 from stribeck.files.datasets import Column, listed
 from stribeck.files.results import Labelled, Tabled
 from stribeck.numerics.events import Event
+from stribeck.numerics.settings import EPSILON
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
@@ -237,13 +238,11 @@ class Scan:
 
         def is_enough(found: FrictionPath) -> bool:
             begin = found.source.ends[:: int(outward)][0]
-            return self._first_change(found, begin, _reached(found, end, outward)) is not None or (
-                outward < 0 and _stays_mixed(found)
-            )
+            return self._first_change(found, begin, _reached(found, end, outward)) is not None or _keeps_regime(found, outward)
 
         reached = float(np.clip(end, *path.source.ends))
         change = self._first_change(path, here, reached)
-        if change is None and outward * (end - reached) > ROUNDING and not (outward < 0 and _stays_mixed(path)):
+        if change is None and outward * (end - reached) > ROUNDING and not _keeps_regime(path, outward):
             try:
                 path = path.continued(end, is_enough, self._report)
             except SolveError:
@@ -288,6 +287,18 @@ class Scan:
 def _reached(path: FrictionPath, end: float, outward: float) -> float:
     """Return how far a path leads towards an end, not beyond it: there the friction of asperities may be unknown."""
     return outward * min(outward * path.source.ends[1 if outward > 0 else 0], outward * end)
+
+
+def _keeps_regime(path: FrictionPath, outward: float) -> bool:
+    """Return whether no other regime can be beyond the end of a path."""
+    if outward < 0 and _stays_mixed(path):
+        return True
+    places = path.source.places[:: int(outward)][-2:]
+    read = path.source.read(places)
+    contact, viscous, *_ = read.friction_terms(*path.coefficients)[-1]
+    roughness = [path.source.coordinate.groups_at(s).relative_roughness for s in places.tolist()]
+    films = read.values["minimum_gap"] / np.array(roughness)
+    return bool(friction_share(contact, viscous) < EPSILON and films[-1] > films[0])  # less than the rounding of their sum
 
 
 def _stays_mixed(path: FrictionPath) -> bool:
