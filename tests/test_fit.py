@@ -202,6 +202,26 @@ def test_a_curve_without_a_plateau_cannot_give_the_dry_friction():
     assert math.isinf(found["boundary_friction"].interval_95[1])
 
 
+@pytest.mark.slow  # profiles without curvature take a hundred places
+def test_intervals_of_what_is_not_determined_hold_each_other_and_what_fits_as_well():
+    # Six rows on the plateau: the profiles are long, and some trials end in another minimum.
+    friction = [0.658816979, 0.5733061724, 0.6247827919, 0.6012751676, 0.5902146524, 0.5662682044]
+    data = measured(np.geomspace(5e-5, 6.387300787e-4, 6), friction)
+    found = sb.fit(data, TRUE, free=["boundary_friction", "roughness", "modulus"])
+    for each in found.inputs:
+        for wide, narrow, sign in zip(each.interval_95, each.interval_68, (-1, 1), strict=True):
+            assert sign * wide >= sign * narrow
+    with_other = sb.fit(data, TRUE.replace(boundary_friction=5.2), free=["roughness", "modulus"], intervals=False)
+    assert with_other.noise < 1.05 * found.noise
+    assert found["boundary_friction"].interval_95[1] > 5.2
+
+
+def test_residuals_with_one_degree_of_freedom_have_no_order_to_judge():
+    found = sb.fit(noisy(3, rows=4), NEAR, free=["boundary_friction", "roughness", "modulus"], intervals=False)
+    assert found.quality.degrees_of_freedom == 1
+    assert found.quality.structure_probability == 1 and not found.quality.messages
+
+
 @pytest.mark.quick
 def test_a_share_below_the_error_of_friction_is_said_to_be_that_at_most():
     speeds, friction = exact(low=5.0, high=50.0, rows=8)
@@ -314,6 +334,22 @@ def test_outliers_do_not_steer_the_robust_fit():
     [note] = [note for note in robust.notes if "four standard errors" in note]
     ratios = data.friction / right.friction
     assert re.findall(r"\d+", note) == [str(row) for row in data.rows[ratios > 1.5]]
+
+
+def test_intervals_of_a_robust_fit_are_those_of_the_scatter_also_where_errors_are_given():
+    speeds, friction = exact(rows=8)
+    noisy_friction = friction * np.exp(0.03 * np.random.default_rng(5).standard_normal(8))
+    small, large = (
+        sb.fit(measured(speeds, noisy_friction, error * friction), TRUE, free=["roughness"], robust=True, intervals=False)
+        for error in (0.01, 0.15)
+    )
+    for found, size in ((small, "too small"), (large, "too large")):
+        width = math.log(found["roughness"].interval_95[1] / found["roughness"].value)
+        student = 2.3646  # of seven degrees of freedom
+        assert width == pytest.approx(student * found["roughness"].standard_error, rel=1e-3)
+        [message] = found.quality.messages
+        assert size in message and "robust fit follow from the scatter" in message
+    assert large["roughness"].standard_error < 2 * small["roughness"].standard_error
 
 
 def test_a_fit_that_ran_out_of_steps_says_so(monkeypatch, tmp_path, capsys):

@@ -22,7 +22,7 @@ from stribeck._types import Array, Indices
 from stribeck.asperity_friction.coulomb import Coulomb
 from stribeck.contacts.parts import KINDS
 from stribeck.fits.free_inputs import FreeInput
-from stribeck.fits.least_squares import MAD, Minimum
+from stribeck.fits.least_squares import MAD, NEAR, Minimum
 from stribeck.fits.model import Prediction
 from stribeck.quantities.docstrings import Described
 from stribeck.quantities.units import listed
@@ -211,16 +211,20 @@ def judge_residuals(at: Minimum, curve: Indices, degrees_of_freedom: float) -> Q
         total = float(r @ r)
         probability = float(chi2.sf(total, degrees_of_freedom))
         ratio = total / degrees_of_freedom
+        of_scatter = "Intervals of a robust fit follow from the scatter of the residuals, not from the errors given."
+        wider, narrower = "Intervals are wider by this factor.", "Intervals are too wide by this factor."
+        if at.objective.robust:
+            wider = narrower = of_scatter
         if probability < SIGNIFICANT:
             messages.append(
                 f"Residuals are larger than the errors given (chi squared {total:.3g} for {degrees_of_freedom:.3g} degrees "
                 f"of freedom, p = {probability:.1g}): the errors are too small by a factor {math.sqrt(ratio):.2g}, there "
-                "are outliers, or the model misses something. Intervals are wider by this factor."
+                f"are outliers, or the model misses something. {wider}"
             )
         elif probability > 1 - SIGNIFICANT / 10:
             messages.append(
                 f"Residuals are smaller than the errors given (chi squared {total:.3g} for {degrees_of_freedom:.3g} degrees "
-                f"of freedom): the errors are too large by a factor {1 / math.sqrt(ratio):.2g}, and so are the intervals."
+                f"of freedom): the errors are too large by a factor {1 / math.sqrt(ratio):.2g}. {narrower}"
             )
     autocorrelation, structure = _structure(at, curve)
     if structure < SIGNIFICANT:
@@ -248,7 +252,9 @@ def _structure(at: Minimum, curve: Indices) -> tuple[float, float]:
     following = curve[1:] == curve[:-1]
     correlation = (drawn[:, 1:] * drawn[:, :-1])[:, following].sum(axis=1) / power
     slow = ((drawn @ _waves(curve)) ** 2).sum(axis=1) / power
-    tails = [float((1 + (each[1:] >= each[0]).sum()) / (1 + DRAWS)) for each in (correlation, slow)]
+    # With one degree of freedom all draws are alike but for what the iteration left of the way to the optimum.
+    alike = NEAR / max(float(np.linalg.norm(at.residuals)), NEAR)
+    tails = [float((1 + (each[1:] >= each[0] - alike).sum()) / (1 + DRAWS)) for each in (correlation, slow)]
     return float(correlation[0]), min(1.0, 2 * min(tails))
 
 

@@ -2,7 +2,7 @@ r"""Intervals of a fit, by its covariance or by profile likelihood.
 
 The latter is how far an input can be moved, the others fitted anew, until noise cannot explain it.  An end of the interval is
 where :math:`\min_{\theta: \theta_i \text{ fixed}} q - \min q = t^2`, with t the quantile of Student's distribution where the
-size of the noise comes from the residuals, else of the normal one; for the robust loss times
+size of the noise comes from the residuals, as for the robust loss, else of the normal one; for the robust loss times
 :math:`\langle \psi^2 \rangle / \langle \psi' \rangle` (Heritier and Ronchetti, J. Am. Stat. Assoc. 89 (1994) 897).
 Source: Venzon and Moolgavkar, Appl. Stat. 37 (1988) 87.
 """
@@ -88,7 +88,7 @@ def covariance_of(at: Minimum) -> tuple[Array, list[float], float]:
     inner[lost, lost] = np.inf
     covariance = np.full((p, p), np.nan)
     covariance[np.ix_(free, free)] = inner
-    known = given and excess == 1
+    known = given and excess == 1 and not at.objective.robust
     quantiles = [float((norm.ppf(0.5 + level / 2) if known else t.ppf(0.5 + level / 2, freedom)) ** 2) for level in LEVELS]
     return covariance, quantiles, inflation
 
@@ -142,10 +142,13 @@ def _side(
 
     def root_excess(distance: float) -> float:
         """Return the square root of what q is above its minimum, at a distance from the fit."""
-        near = min(known, key=lambda point: abs(point[0] - distance))
+        # From the side of the fit: a point farther out may be in another minimum, as one trial was a long way.
+        near = max((point for point in known if point[0] < distance), key=lambda point: point[0])
         fixed = {i: float(at.theta[i]) + sign * distance}
-        # Where the others do not follow as they should, they may be led beyond what the model holds for.
-        for guess in (near[2] + sign * (distance - near[0]) * follow, near[2]):
+        # Where the others do not follow as they should, they may end beyond the model or in another minimum.
+        guesses = [near[2] + sign * (distance - near[0]) * follow, near[2]]
+        again = [point for point in known if point[0] == distance]
+        for guess in reversed(guesses) if again else guesses:
             try:
                 inside = np.clip(guess, bounds[0] + 1e-9, bounds[1] - 1e-9)
                 found = minimise(at.objective, inside, fixed, tolerance=ENOUGH, near=CLOSE)
@@ -157,9 +160,10 @@ def _side(
         if found.value < at.value - BETTER:
             raise _BetterMinimumError(found.theta)
         excess = math.sqrt(max(0.0, found.value - found.fall - at.value))
-        known.append((distance, excess, found.theta))
+        best = min([*again, (distance, excess, found.theta)], key=lambda point: point[1])
+        known[:] = [*(point for point in known if point[0] != distance), best]
         on_point()
-        return excess
+        return best[1]
 
     ends = []
     for threshold in thresholds:
@@ -176,9 +180,10 @@ def _crossing(
     The function may be infinite beyond some distance.
     """
     low, low_value = max(((d, v) for d, v, _ in known if v <= target), default=(0.0, 0.0))
-    above = [(d, v) for d, v, _ in known if v > target]
+    above = [(d, v) for d, v, _ in known if d > low]
     high, high_value = min(above, default=(math.inf, math.inf))
     slope = 1 / width if width > 0 else 1.0
+    short = False  # Whether the straight line fell short of the crossing
     for _ in range(MOST_TRIALS):
         if math.isinf(high):
             if low >= reach * (1 - 1e-9):
@@ -187,15 +192,21 @@ def _crossing(
             trial = min(reach, max(target / rate, 1.02 * low), low + LONGEST)
         else:
             # The straight line between the ends, kept away from both; the middle where the farther one cannot be solved.
-            part = (target - low_value) / (high_value - low_value) if math.isfinite(high_value) else 0.5
+            straight = math.isfinite(high_value) and not short
+            part = (target - low_value) / (high_value - low_value) if straight else 0.5
             trial = low + (high - low) * min(0.95, max(0.05, part))
         value = function(trial)
         if abs(value - target) < ACCURACY:
             return trial
-        if value <= target:
-            low, low_value = trial, value
-        else:
+        short = value <= target
+        if not short:
             high, high_value = trial, value
+            continue
+        low, low_value = trial, value
+        if math.isfinite(high):  # found from farther away, it may be in another minimum
+            high_value = function(high)
+        if high_value <= target:
+            low, low_value, high, high_value = high, high_value, math.inf, math.inf
         if high - low < 1e-6 * max(high, 1e-3):
             break
     return high if math.isfinite(high_value) else math.inf

@@ -26,7 +26,7 @@ from stribeck.fits.states import States
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["MAD", "Minimum", "Objective", "effective_parameters", "minimise", "objective", "settle"]
+__all__ = ["MAD", "NEAR", "Minimum", "Objective", "effective_parameters", "minimise", "objective", "settle"]
 
 CAUCHY = 2.385  # Constant c of the robust loss, in standard errors
 
