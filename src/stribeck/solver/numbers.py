@@ -174,9 +174,8 @@ def _error(solution: Any, row: Observable) -> float:
         relative = _relative_error(solution, "minimum_gap")
         return value * relative if math.isfinite(value) else 0.0
     if row.error:
-        size = (
-            max(value, abs(solution.central_gap)) if row.name == "offset" else value
-        )  # it crosses zero where films are thick
+        # The offset crosses zero where films become thick.
+        size = max(value, abs(solution.central_gap)) if row.name == "offset" else value
         return float(absolute_error(row, size, _relative_error(solution, row.name)))
     return float(getattr(solution, f"{row.name}_error", math.nan))
 
