@@ -87,6 +87,18 @@ def test_of_95_per_cent_intervals_90_to_99_per_cent_hold_the_truth(written):
 
 
 @pytest.mark.quick
+def test_noise_of_the_force_that_is_alike_at_all_speeds_is_no_share_of_friction(written):
+    rng, off = np.random.default_rng(8), []
+    for _ in range(12):
+        rows = stepped(rng, n=30, speeds=np.geomspace(0.3, 300, 8), start=0, amplitude=0)
+        for step in rows.reshape(-1, 30, 4):
+            step[:, 3] += 0.01 * noise(rng, 30)
+        found = sb.bench.read(written(text_of(rows)))
+        off.append((found.friction - curve(1e3 * found.speed)) / found.half_width * 1.96)
+    sizes = np.sqrt(np.mean(np.square(off), axis=0))  # at each speed, one where the error is right
+    assert np.all((sizes > 0.4) & (sizes < 1.4))
+
+
 def test_the_zero_of_the_force_and_its_drift_are_found_and_taken_off(written):
     found = sb.bench.read(written(text_of(stepped(np.random.default_rng(1), amplitude=0.005))))
     assert_holds(found)

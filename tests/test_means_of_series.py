@@ -64,6 +64,16 @@ def test_errors_of_means_are_those_that_the_memory_of_samples_leaves(read):
     assert 0.7 < np.sqrt(np.mean(np.square(misses))) < 1.25
 
 
+def test_noise_alike_at_all_speeds_is_no_share_of_friction(read):
+    rng, misses = np.random.default_rng(8), []
+    for _ in range(40):
+        rows = [(step, u, curve(u) + 0.004 * each) for step, u in enumerate(SPEEDS) for each in noise(rng, 20, 0.5)]
+        found = read(rows)
+        misses.append((found.friction - curve(1e3 * found.values)) / found.error)
+    sizes = np.sqrt(np.mean(np.square(misses), axis=0))  # at each speed, one where the error is right
+    assert np.all((sizes > 0.5) & (sizes < 1.5))
+
+
 def test_steps_shorter_than_the_memory_of_their_noise_share_what_they_show_of_it(read):
     rng, misses = np.random.default_rng(11), []
     speeds = np.geomspace(0.1, 300, 15)

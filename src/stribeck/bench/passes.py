@@ -22,6 +22,7 @@ from stribeck.fits.repeats import (
     error_of_mean,
     errors_of_means,
     memory,
+    sizes_of_noise,
 )
 from stribeck.fits.strokes import REST_SPEED
 from stribeck.quantities.formats import format_percent, format_si
@@ -317,7 +318,7 @@ def _with_errors(found: Sequence[Pass], raw: Raw) -> list[Pass]:
     for strokes in (False, True):
         mine = [i for i, each in enumerate(found) if each.strokes == strokes]
         if mine:
-            sizes = [abs(found[i].mean) or 1.0 for i in mine]
+            sizes = sizes_of_noise([found[i].values for i in mine])
             series = [(found[i].values - found[i].mean) / size for i, size in zip(mine, sizes, strict=True)]
             alone = math.sqrt(memory(series)[0])
             for i, size, error in zip(mine, sizes, errors_of_means(series), strict=True):

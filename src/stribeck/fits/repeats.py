@@ -28,6 +28,7 @@ __all__ = [
     "errors_of_means",
     "memory",
     "run_in",
+    "sizes_of_noise",
 ]
 
 FEWEST = 3  # Repeats from which their scatter is an error, and rows from which a setting is one
@@ -57,6 +58,21 @@ def errors_of_means(series: Sequence[Array]) -> list[float]:
             error = error_of_mean(max(1.0, len(series[i]) / block), *common)
             best[i] = max(best[i], error, error_of_mean(len(each), *memory([each])) if apart else 0.0)
         block *= 2
+
+
+def sizes_of_noise(series: Sequence[Array]) -> list[float]:
+    """Return what the noise of each series goes with: its mean, or, where their scatter clearly says so, a lower power of it."""
+    from scipy.stats import linregress
+
+    means = np.array([abs(float(each.mean())) or 1.0 for each in series])
+    scatter = np.array([float(each.std()) for each in series])
+    seen = scatter > 0
+    x, y = np.log(means[seen]), np.log(scatter[seen] / means[seen])
+    power = 1.0
+    if len(x) > 2 and np.ptp(x) > 0:
+        line = linregress(x, y)
+        power = float(np.clip(1 + line.slope, 0, 1)) if line.pvalue < SMALL_PROBABILITY else 1.0
+    return list((means**power).tolist())
 
 
 def memory(series: Sequence[Array], as_pass: bool = False) -> tuple[float, float]:
@@ -189,8 +205,12 @@ def _together(group: Sequence[_Step], error: float) -> Row:
 
 def _errors(groups: Sequence[Sequence[_Step]]) -> tuple[list[float], str]:
     """Return the relative standard errors of the means of steps at one speed, and what they are from."""
-    series = [np.array([row[3] for row in step.rows]) / step.mean[3] - 1 for group in groups for step in group]
-    within = iter(errors_of_means(series))
+    steps = [step for group in groups for step in group]
+    series = [np.array([row[3] for row in step.rows]) for step in steps]
+    sizes_of = sizes_of_noise(series)
+    absolute = errors_of_means([(each - each.mean()) / size for each, size in zip(series, sizes_of, strict=True)])
+    within = iter([error * size / step.mean[3] for error, size, step in zip(absolute, sizes_of, steps, strict=True)])
+    series = [each / each.mean() - 1 for each in series]
     own, spread, freedom = [], 0.0, 0
     for group in groups:
         sizes = np.array([len(step.rows) for step in group], float)
