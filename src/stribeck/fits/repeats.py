@@ -61,7 +61,7 @@ def errors_of_means(series: Sequence[Array]) -> list[float]:
 
 
 def sizes_of_noise(series: Sequence[Array]) -> list[float]:
-    """Return what the noise of each series goes with: its mean, or, where their scatter clearly says so, a lower power of it."""
+    """Return what the noise of each series goes with: its mean, or a lower power of it where their scatter clearly says so."""
     from scipy.stats import linregress
 
     means = np.array([abs(float(each.mean())) or 1.0 for each in series])
