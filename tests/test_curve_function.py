@@ -111,6 +111,14 @@ def test_fields_are_solved_where_they_are_asked_for(curve):
 
 
 @pytest.mark.slow
+def test_a_state_that_rounding_limits_hands_its_mesh_on_with_its_inverse():
+    """The next state had been begun on the mesh before, whose inverse has another size."""
+    curve = sb.stribeck_curve(sb.Groups(1.0, 0.1, 1e-6), speed=(1e-7, 2e-6), rtol=1e-10, points=3)
+    assert curve.outcome.ok and any("Rounding" in note for note in curve.notes)
+    alone = sb.solve(sb.Groups(float(curve.values[1]), 0.1, 1e-6), rtol=1e-10)
+    assert curve.friction.total[1] == pytest.approx(float(alone.friction()), rel=1e-9)
+
+
 def test_films_as_thin_as_rounding_take_few_states():
     curve = sb.stribeck_curve(load=0.1, roughness=0.0, speed=(1e-11, 3e-11), points=2, rtol=1e-7)
     assert curve.states <= 6 and curve.error_estimate <= 1e-7

@@ -298,6 +298,7 @@ class LineProblem(LineStates):
         state = state.corrected()
         y, inverse, state = state.y, state.root.inverse, state.without_inverse()
         assert inverse is not None
+        self.steps.move_to(refined)  # one that rounding limits has a mesh of its own
         self.steps.inverse = inverse  # that of the next state, too
         with np.errstate(all="ignore"):  # values that are not finite are cut off below
             direction, shifts = shift_along(self.groups_at(s), state.groups, self.direction, MAX_DEGREE)
