@@ -67,6 +67,13 @@ def test_what_breaks_the_curve_is_named_with_its_direction_and_size():
         assert np.log(mix.shift) == pytest.approx(-np.log(1.7), abs=4 * mix.shift_error)
 
 
+def test_curves_that_are_one_are_not_named_for_a_third_that_lies_apart():
+    for seed in range(4):
+        broken = sb.master_curve(curves(seed, factors=(1, 1, 0.6)), TRUE)["speed_viscosity"]
+        assert [each.curve for each in broken.offsets if each.is_far] == ["water"]
+        assert broken.offsets[0].offset == pytest.approx(-0.4, abs=0.03)
+
+
 def test_a_power_of_an_input_is_found_where_friction_goes_with_it():
     loads = (10.0, 40.0, 160.0)
     data = curves(5, factors=[load**-0.2 for load in loads], loads=loads)

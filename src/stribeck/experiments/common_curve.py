@@ -188,8 +188,9 @@ def _departures(points: Points) -> Array:
 def overlapping(points: Points) -> Array:
     """Return which rows lie where another curve was measured too."""
     found = np.zeros(len(points.x), bool)
-    for c in range(points.count):
-        others = [points.x[points.curve == each] for each in range(points.count) if each != c]
+    there = np.unique(points.curve).tolist()
+    for c in there:
+        others = [points.x[points.curve == each] for each in there if each != c]
         mine = points.curve == c
         found |= mine & np.any([(points.x >= each.min()) & (points.x <= each.max()) for each in others], axis=0)
     return found

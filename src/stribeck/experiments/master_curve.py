@@ -98,7 +98,9 @@ class Collapse(Record):
     scatter: Annotated[float, "scatter about one curve, relative to friction", "1"]
     noise: Annotated[float, "noise of each curve by itself: over the stated errors, without any relative to friction", "1"]
     probability: Annotated[float, "with which chance makes curves that are one differ as much", "1"]
-    offsets: Annotated[tuple[CurveOffset, ...], "where each curve lies beside the others, the farthest first"]
+    offsets: Annotated[
+        tuple[CurveOffset, ...], "where each curve lies beside those that do not lie farther apart, the farthest first"
+    ]
     powers: Annotated[tuple[PowerLaw, ...], "powers of the inputs in which curves differ, the surest first"]
     values: Annotated[Array, "abscissa of each row [SI]"]
     common: Annotated[Array, "friction of the common curve at each row"]
@@ -303,7 +305,7 @@ def _collapse(over: str, data: Measurements, contacts: list[Contact], error: Arr
     found = agreement(points)
     knots = knots_of(points.x, found.size)
     places = np.linspace(points.x.min(), points.x.max(), DRAWN_POINTS)
-    offsets = sorted(_offsets(data, points, found), key=lambda each: -abs(math.log1p(each.offset)) / each.offset_error)
+    offsets = _offsets(data, points, found)
     powers = sorted(_powers(contacts, points, found), key=lambda each: each.probability)
     return Collapse(
         over=over,
@@ -327,12 +329,26 @@ def _factor(over: str, data: Measurements, contact: Contact) -> float:
     return speed * contact.viscosity if over == "speed_viscosity" else speed / rule.speed_per("hersey_number", contact)
 
 
-def _offsets(data: Measurements, points: Points, found: Agreement) -> Iterator[CurveOffset]:
-    for curve, name in enumerate(data.curves):
-        each = departure(points, curve, found)
-        if each is not None:
-            offset, error, shift, shift_error, is_shift = each
-            yield CurveOffset(name, math.expm1(offset), error, math.exp(shift), shift_error, is_shift)
+def _offsets(data: Measurements, points: Points, found: Agreement) -> list[CurveOffset]:
+    """Return where each curve lies beside those that do not lie farther apart, the farthest first."""
+    left, apart = set(range(len(data.curves))), list[CurveOffset]()
+    while True:
+        among = points.part(np.nonzero(np.isin(points.curve, sorted(left)))[0])
+        offsets = {curve: each for curve in left if (each := _offset(data.curves[curve], among, curve, found))}
+        order = sorted(offsets, key=lambda curve: -abs(math.log1p(offsets[curve].offset)) / offsets[curve].offset_error)
+        if len(left) < 3 or not order or not offsets[order[0]].is_far:
+            return [*apart, *(offsets[curve] for curve in order)]
+        apart.append(offsets[order[0]])
+        left.remove(order[0])
+
+
+def _offset(name: str, points: Points, curve: int, found: Agreement) -> CurveOffset | None:
+    """Return where a curve lies beside the others, None where too few of its rows lie beside them."""
+    each = departure(points, curve, found)
+    if each is None:
+        return None
+    offset, error, shift, shift_error, is_shift = each
+    return CurveOffset(name, math.expm1(offset), error, math.exp(shift), shift_error, is_shift)
 
 
 def _powers(contacts: list[Contact], points: Points, found: Agreement) -> Iterator[PowerLaw]:
