@@ -48,6 +48,8 @@ LIMITS = CASES | {
     ),
     "map, 128 x 128, H = 0.8, 7 waves, longest wave as the scan": (surface(128, 7, 0.8, 1.0), (128, 128)),
     "map, 128 x 128, H = 0.8, 7 waves, longest wave 20 scans": (surface(128, 7, 0.8, 20.0), (128, 128)),
+    "map, 128 x 128, H = 0.8, 7 waves, longest wave a third of the scan": (surface(128, 7, 0.8, 1 / 3), (128, 128)),
+    "profile, 1024, H = 0.8, 16 waves, longest wave a fifth of the scan": (surface(1024, 16, 0.8, 0.2), (1024,)),
     "map, 128 x 128, H = 0.8, 4 waves": (surface(128, 4, 0.8), (128, 128)),
     "map, 128 x 128, H = 0.8, no roll-off, longest wave 4 scans": (surface(128, None, 0.8, 4.0), (128, 128)),
     "map, 128 x 128, H = 0.5, no roll-off, longest wave as the scan": (surface(128, None, 0.5, 1.0), (128, 128)),

@@ -1081,7 +1081,7 @@ def test_rows_of_a_map_have_the_transitions_of_their_own(monkeypatch):
 
 def test_a_file_of_heights_becomes_the_surface_of_the_contact():
     found = read_scan("../profile.csv", PROFILE)
-    assert found.report.startswith("Surface of profile.csv: rms height 611 nm, alpha 1.81 (1.7 to 1.84), beta 0.0197 (")
+    assert found.report.startswith("Surface of profile.csv: rms height 611 nm, alpha 1.81 (1.7 to 2.22), beta 0.0197 (")
     after = with_scan(START, found)
     surface = sb.surfaces.analyse(sb.surfaces.read_topography(EXAMPLES / "cylinder_profile.csv"))
     law = surface.law

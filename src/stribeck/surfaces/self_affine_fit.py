@@ -24,8 +24,10 @@ __all__ = ["Estimate", "FitParameters", "SelfAffineFit", "central_differences", 
 
 STANDARD_ERRORS_95 = 1.959964  # Standard errors to each side that hold 95 % of a normal distribution
 
-# Wave numbers of the longest wave of the surface, over the lowest that was seen; the last is as good as none at all
+# Wave numbers of the longest wave of the surface, over that of the scan; the last is as good as none at all
 LONGEST_WAVE_RATIOS = (1.0, 0.3, 0.1, 1e-3)
+
+CHANCE = 3.84  # Decrease of the deviance by one more parameter that chance gives once in twenty
 
 SHORTEST_WAVE = 1e-9  # Shortest wave of any surface: a few atoms [m]
 
@@ -69,7 +71,7 @@ class FitParameters:
         """Return ln h_rms, H, ln q_r, ln q_0 and ln q_1, with roll-off and q_0 moved by factors to longer waves."""
         H, q1 = float(theta[1]), float(theta[-1])
         q_r = (max(theta[2], theta[-2]) if self.roll_off else theta[-2]) + math.log(corner)
-        q0 = (theta[-2] if self.roll_off else q_r) + math.log(lowest)
+        q0 = min((theta[-2] if self.roll_off else q_r) + math.log(lowest), q_r)
         shape = SelfAffine(1.0, math.exp(q0), math.exp(q1), H, math.exp(q_r))
         if self.is_line:
             level = float(line_density(np.array(math.exp(self.centre)), shape))
@@ -93,7 +95,7 @@ class FitParameters:
         else:
             # A power law that is not seen to end may end, or become a plateau, anywhere beyond the scan.
             longer = (
-                [(1.0, factor) for factor in LONGEST_WAVE_RATIOS]
+                [(1.0, factor) for factor in (MIN_WAVES_IN_SCAN, *LONGEST_WAVE_RATIOS)]
                 if self.roll_off
                 else list(itertools.product(LONGEST_WAVE_RATIOS, LONGEST_WAVE_RATIOS))
             )
@@ -110,7 +112,7 @@ class SelfAffineFit(Described):
     noise: Annotated[float, "spectrum of the white noise, as that of the measurement; 0 where none was found"]
     deviance: Annotated[float, "deviance over its expectation: near one where the model holds", "1"]
     band: Annotated[tuple[float, float], "wave numbers that were fitted", "1/m"]
-    _parameters: FitParameters = field(repr=False)
+    _admissible: tuple[FitParameters, ...] = field(repr=False)  # first those of the fit, then of others with a longest wave
 
     def exponential_limit(self, gamma: float = GAMMA) -> tuple[Estimate, Estimate]:
         """Return alpha and beta of the contact law, each with its 95 % interval.
@@ -128,25 +130,26 @@ class SelfAffineFit(Described):
         Notes
         -----
         The interval is that of a profile over what both ends of the spectrum hide: from the smallest of ``value - 1.96
-        standard errors`` to the largest of ``value + 1.96 standard errors``, over longest waves from the scan on, and with
-        the power law to its end at the shortest wave seen or at 1 nm.  If neither a roll-off nor the longest wave was seen,
-        ``beta`` has no lower bound, and its interval begins at 0.  How often the intervals hold the truth is in
-        docs/surfaces.md, from ``benchmarks/surface_errors.py``.
+        standard errors`` to the largest of ``value + 1.96 standard errors``, over all longest waves that the spectrum does
+        not exclude, and with the power law to its end at the shortest wave seen or at 1 nm.  If neither a roll-off nor the
+        longest wave was seen, ``beta`` has no lower bound, and its interval begins at 0.  How often the intervals hold the
+        truth is in docs/surfaces.md, from ``benchmarks/surface_errors.py``.
         """
-        known = self._parameters
+        known = self._admissible[0]
         best = np.log(exponential_limit(known.surface(known.theta), gamma))
-        hidden = known.admissible_extensions
-        profile = np.array([np.log(exponential_limit(known.surface(known.theta, *each), gamma)) for each in hidden])
+        hidden = [(each, ends) for each in self._admissible for ends in each.admissible_extensions]
+        profile = np.array([np.log(exponential_limit(each.surface(each.theta, *ends), gamma)) for each, ends in hidden])
         low, high = np.empty(2), np.empty(2)
         for i in (0, 1):
-            for ends, at, sign in ((low, profile[:, i].argmin(), -1), (high, profile[:, i].argmax(), 1)):
+            for bound, at, sign in ((low, profile[:, i].argmin(), -1), (high, profile[:, i].argmax(), 1)):
+                each, ends = hidden[at]
 
-                def limit(theta: Array, each: tuple[float, float, bool] = hidden[at]) -> Array:
-                    return np.log(exponential_limit(known.surface(theta, *each), gamma))
+                def limit(theta: Array, of: FitParameters = each, ends: tuple[float, float, bool] = ends) -> Array:
+                    return np.log(exponential_limit(of.surface(theta, *ends), gamma))
 
-                turn = central_differences(limit, known.theta)[i]
-                ends[i] = math.exp(
-                    profile[at, i] + sign * STANDARD_ERRORS_95 * math.sqrt(float(turn @ known.covariance @ turn))
+                turn = central_differences(limit, each.theta)[i]
+                bound[i] = math.exp(
+                    profile[at, i] + sign * STANDARD_ERRORS_95 * math.sqrt(float(turn @ each.covariance @ turn))
                 )
         if not (known.q0_found or known.roll_off):
             low[1] = 0.0
@@ -156,7 +159,7 @@ class SelfAffineFit(Described):
     @property
     def beta_of_shorter_waves(self) -> float:
         """Largest beta over the value, if the power law goes on to shorter waves than were seen."""
-        known = self._parameters
+        known = self._admissible[0]
         ends = (exponential_limit(known.surface(known.theta, finest=finest))[1] for finest in (False, not known.q1_found))
         seen, all_waves = ends
         return all_waves / seen
@@ -276,7 +279,7 @@ class _Trial:
         # Roll-off and noise are the rule, and cost no more than what chance gives once in twenty; a roll-off beside a
         # cut-off is not.
         cheap = (self.roll_off and self.low == 0) + self.noise
-        return self.deviance + (self.parameters - cheap) * math.log(self.weight) + 3.84 * cheap
+        return self.deviance + (self.parameters - cheap) * math.log(self.weight) + CHANCE * cheap
 
 
 def _best(trials: Iterable[_Trial | None]) -> _Trial | None:
@@ -316,24 +319,26 @@ def _fit_best_cut_offs(data: MeasuredSpectrum, places: list[tuple[int, int]]) ->
     return None if best is None else _best((best, _fit_between_cut_offs(data, True, False, best.low, best.high)))
 
 
-def _fit_between_cut_offs(data: MeasuredSpectrum, roll_off: bool, noise: bool, low: int, high: int) -> _Trial | None:
-    """Return the fit with cut-offs before ring ``low`` and after ring ``high`` - 1."""
-    q, n = data.wavenumber, data.wavenumber.size
-    part, centre = _rings(data, slice(low, high)), math.log(q[low] * q[high - 1]) / 2
+def _fit_between_cut_offs(
+    data: MeasuredSpectrum, roll_off: bool, noise: bool, low: int, high: int, near: _Trial | None = None
+) -> _Trial | None:
+    """Return the fit with cut-offs before ring ``low`` and after ring ``high`` - 1, sought near another one if given."""
+    q, n, part = data.wavenumber, data.wavenumber.size, _fitted_rings(data, low, high)
+    centre, longest = _centre(data, low, high), _longest(data, low)
     from scipy.optimize import least_squares  # here, as it takes a fifth of a second to import
 
     # Beyond a cut-off only what the window leaks is left: a level of its own for each ring.
     for outside, edge in ((data.density[:low], low), (data.density[high:], high - 1)):
-        if outside.size and not outside.min() < CUT_OFF_RATIO * data.density[edge]:
+        if not data.is_line and outside.size and not outside.min() < CUT_OFF_RATIO * data.density[edge]:
             return None
-    levels = n - (high - low)
+    levels = n - part.wavenumber.size
     slope, height = np.polyfit(np.log(part.wavenumber) - centre, np.log(part.density), 1, w=np.sqrt(part.modes))
     steep = 1.0 if data.is_line else 2.0
     values = [height, min(max((-slope - steep) / 2, 0.1), 0.95)]
     lower, upper = [-np.inf, 0.01], [np.inf, 0.9999]
     if roll_off:
         values.append(math.log(q[low]) + 0.3 * math.log(q[high - 1] / q[low]))
-        lower.append(math.log(part.inner[0, 0]))
+        lower.append(math.log(longest))
         upper.append(math.log(q[high - 1]) - 0.5)
         if lower[-1] >= upper[-1]:
             return None
@@ -344,12 +349,14 @@ def _fit_between_cut_offs(data: MeasuredSpectrum, roll_off: bool, noise: bool, l
         upper.append(floor + 2.0)
 
     def residual(theta: Array) -> Array:
-        ratio = part.density / _model(theta, part, centre, roll_off, noise)
+        ratio = part.density / _model(theta, part, centre, longest, roll_off, noise)
         excess = np.maximum(ratio - 1 - np.log(ratio), 0.0)
         return np.asarray(np.sign(ratio - 1) * np.sqrt(2 * part.modes * excess))
 
     starts = [values]
-    if roll_off:
+    if near is not None and near.roll_off == roll_off:
+        starts = [list(near.values)]
+    elif roll_off:
         starts += [[height, values[1], lower[2] + share * (upper[2] - lower[2]), *values[3:]] for share in (0.1, 0.6)]
     best: Any = None
     for start in starts:
@@ -363,13 +370,28 @@ def _fit_between_cut_offs(data: MeasuredSpectrum, roll_off: bool, noise: bool, l
     return _Trial(best.x, roll_off, noise, low, high, 2 * best.cost, len(values) + levels, weight)
 
 
-def _model(theta: Array, data: MeasuredSpectrum, centre: float, roll_off: bool, noise: bool) -> Array:
+def _fitted_rings(data: MeasuredSpectrum, low: int, high: int) -> MeasuredSpectrum:
+    """Return the rings between cut-offs; along a line all, as waves at an angle show beyond its longest wave."""
+    return data if data.is_line else _rings(data, slice(low, high))
+
+
+def _centre(data: MeasuredSpectrum, low: int, high: int) -> float:
+    """Return the logarithm of the wave number in the middle of a fit."""
+    q = _fitted_rings(data, low, high).wavenumber
+    return math.log(q[0] * q[-1]) / 2
+
+
+def _longest(data: MeasuredSpectrum, low: int) -> float:
+    """Return the wave number of the longest wave of a fit with a cut-off before ring ``low``, or of those in its rings."""
+    return float(data.wavenumber[low] if data.is_line and low > 0 else data.inner[low:].min())
+
+
+def _model(theta: Array, data: MeasuredSpectrum, centre: float, longest: float, roll_off: bool, noise: bool) -> Array:
     """Return the model averaged over each ring, C at its own level exp(theta_0) where ln q = centre."""
     H = float(theta[1])
     if data.is_line:
-        q_r = math.exp(theta[2]) if roll_off else float(data.inner.min())
-        q0 = float(data.inner.min())
-        unit = SelfAffine(1.0, q0, 1e9 * q0, H, max(q_r, q0))
+        q_r = math.exp(theta[2]) if roll_off else longest
+        unit = SelfAffine(1.0, longest, 1e9 * longest, H, max(q_r, longest))
         shape = line_density(data.inner, unit) / float(line_density(np.array(math.exp(centre)), unit))
     else:
         corner = theta[2] if roll_off else -np.inf
@@ -382,9 +404,29 @@ def _model(theta: Array, data: MeasuredSpectrum, centre: float, roll_off: bool, 
 # --- from the parameters of the fit to those of the surface ---
 
 
-def _result(trial: _Trial, data: MeasuredSpectrum) -> SelfAffineFit:
-    q, part = data.wavenumber, _rings(data, slice(trial.low, trial.high))
-    centre = math.log(q[trial.low] * q[trial.high - 1]) / 2
+def _admissible(chosen: _Trial, data: MeasuredSpectrum) -> tuple[FitParameters, ...]:
+    """Return the parameters of a fit, and of those with a longest wave in the scan that fit no worse than by chance."""
+    scale = max(1.0, _excess(chosen, data))
+
+    def score(trial: _Trial) -> float:
+        return trial.deviance / scale + CHANCE * trial.parameters
+
+    found, least = [chosen], score(chosen)
+    for i in range(1, chosen.high - 5 if chosen.low == 0 else 0):
+        if chosen.roll_off and data.wavenumber[i] > math.exp(chosen.values[2]):
+            break
+        shapes = (_fit_between_cut_offs(data, each, chosen.noise, i, chosen.high, chosen) for each in (False, True))
+        best = min(filter(None, shapes), key=score, default=None)
+        if best is not None:
+            if score(best) > least + CHANCE:
+                break
+            found, least = [*found, best], min(least, score(best))
+    return tuple(_parameters(each, data) for each in found if each is chosen or score(each) <= least + CHANCE)
+
+
+def _parameters(trial: _Trial, data: MeasuredSpectrum) -> FitParameters:
+    """Return the parameters of a fit with their covariance."""
+    q, part, centre = data.wavenumber, _fitted_rings(data, trial.low, trial.high), _centre(data, trial.low, trial.high)
     fundamental = data.lowest / MIN_WAVES_IN_SCAN
     cuts = {"q0": trial.low > 0, "q1": trial.high < q.size}
     if cuts["q0"]:
@@ -393,31 +435,42 @@ def _result(trial: _Trial, data: MeasuredSpectrum) -> SelfAffineFit:
         # A roll-off goes on to the whole scan at least; a power law must not be prolonged to where it was not seen.
         q0 = fundamental if trial.roll_off else float(data.lowest)
     q1 = math.sqrt(q[trial.high - 1] * q[trial.high]) if cuts["q1"] else float(data.highest)
+    longest = _longest(data, trial.low)
 
     def model(theta: Array) -> Array:
-        return np.asarray(np.log(_model(theta, part, centre, trial.roll_off, trial.noise)))
+        return np.asarray(np.log(_model(theta, part, centre, longest, trial.roll_off, trial.noise)))
 
     slopes = central_differences(model, trial.values)
     information = slopes.T @ (part.modes[:, None] * slopes)
-    freedom = max(q.size - trial.parameters, 1)
-    excess = trial.deviance / freedom
     covariance = np.zeros((trial.values.size + 2, trial.values.size + 2))
-    covariance[:-2, :-2] = np.linalg.pinv(information) * max(1.0, excess)
+    covariance[:-2, :-2] = np.linalg.pinv(information) * max(1.0, _excess(trial, data))
     # A sharp cut-off is known to the distance between rings, which the window blurs by a fundamental.
     for place, name, ring in ((-2, "q0", trial.low), (-1, "q1", trial.high)):
         if cuts[name]:
             covariance[place, place] = (max(q[ring] - q[ring - 1], fundamental) / q[ring]) ** 2 / 3
     theta = np.concatenate((trial.values, [math.log(q0), math.log(q1)]))
-    parameters = FitParameters(theta, covariance, centre, data.is_line, trial.roll_off, cuts["q0"], cuts["q1"])
+    return FitParameters(theta, covariance, centre, data.is_line, trial.roll_off, cuts["q0"], cuts["q1"])
+
+
+def _excess(trial: _Trial, data: MeasuredSpectrum) -> float:
+    """Return the deviance of a fit over its expectation."""
+    return trial.deviance / max(data.wavenumber.size - trial.parameters, 1)
+
+
+def _result(trial: _Trial, data: MeasuredSpectrum) -> SelfAffineFit:
+    admissible = _admissible(trial, data)
+    parameters, q = admissible[0], data.wavenumber
+    theta = parameters.theta
     values, turn = parameters.physical(theta), central_differences(parameters.physical, theta)
-    spread = covariance.copy()
-    if trial.roll_off and not cuts["q0"]:
+    spread = parameters.covariance.copy()
+    if trial.roll_off and not parameters.q0_found:
         spread[-2, -2] = LONG_CUT_OFF_ERROR**2
     sigma = np.sqrt(np.diag(turn @ spread @ turn.T))
     surface = parameters.surface(theta)
     errors = {"h_rms": surface.h_rms * float(sigma[0]), "hurst": float(sigma[1])}
     if trial.roll_off:
         errors["roll_off"] = math.exp(values[2]) * float(sigma[2])
+    cuts = {"q0": parameters.q0_found, "q1": parameters.q1_found}
     errors |= {name: math.exp(values[i]) * float(sigma[i]) for i, name in ((3, "q0"), (4, "q1")) if cuts[name]}
     flags = {"roll_off": trial.roll_off, **cuts, "noise": trial.noise}
     return SelfAffineFit(
@@ -425,7 +478,7 @@ def _result(trial: _Trial, data: MeasuredSpectrum) -> SelfAffineFit:
         errors=errors,
         found=tuple(name for name, flag in flags.items() if flag),
         noise=math.exp(trial.values[-1]) if trial.noise else 0.0,
-        deviance=float(excess),
+        deviance=float(_excess(trial, data)),
         band=(float(q[trial.low]), float(q[trial.high - 1])),
-        _parameters=parameters,
+        _admissible=admissible,
     )
