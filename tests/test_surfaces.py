@@ -308,6 +308,7 @@ def test_parameters_of_heights_are_those_of_the_standards():
     wave = 256 * STEP / 16
     sine = np.sin(2 * np.pi * x / wave)
     line = analyse(Topography(1e-6 * sine, STEP), trend="mean").to_dict()
+    assert analyse(Topography(1e-6 * sine + 1e-4, STEP), trend="none").rms_height == pytest.approx(
         line["scan_rms_height"], rel=1e-9
     )
     assert line["mean_deviation"] == pytest.approx(2e-6 / np.pi, rel=0.02)

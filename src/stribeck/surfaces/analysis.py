@@ -55,7 +55,7 @@ class Surface(Exported, Told):
 
     @property
     def rms_height(self) -> float:
-        """Root mean square of the heights of the scan about their trend [m]."""
+        """Root mean square of the heights of the scan about their trend, and about their mean where none is taken away [m]."""
         return _rms(self.topography)
 
     @property
@@ -303,7 +303,7 @@ def _fit_notes(topography: Topography, body: Form, measured: MeasuredSpectrum, f
         notes.append(
             f"The Hurst exponent is at the end of its range: the spectrum is {shape_of} than that of self-affine roughness."
         )
-    scan, fitted = float(np.sqrt(np.mean(topography.heights**2))), fit.roughness.h_rms
+    scan, fitted = _rms(topography), fit.roughness.h_rms
     if not 1 / HEIGHT_RATIO_NOTE < fitted / scan < HEIGHT_RATIO_NOTE:
         notes.append(
             f"The rms height of the scan is {format_si(scan, 'length')}, that of the fit {format_si(fitted, 'length')}: "
@@ -335,4 +335,4 @@ def _of_array(heights: Any, spacing: Any) -> Topography:
 
 
 def _rms(topography: Topography) -> float:
-    return float(np.sqrt(np.mean(topography.heights**2)))
+    return float(topography.heights.std())
