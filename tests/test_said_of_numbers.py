@@ -31,7 +31,7 @@ def test_an_interval_says_which_inputs_count_as_exact(capsys):
     contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact
     found = sb.propagate(contact, {"roughness": 0.1, "modulus": 0.1}, transitions=False)
     said = str(found)
-    assert "Intervals count the errors of effective modulus and roughness; " in said
+    assert "Intervals count the errors of effective modulus and roughness as independent; " in said
     for label in ("radius", "load", "contact-law beta", "dry friction coefficient", "viscosity"):
         assert label in said.split("; ")[-1].split("count as exact")[0], label
     surface = sb.load_case(EXAMPLES / "rod_seal.toml").contact

@@ -156,5 +156,5 @@ def exact_inputs(contact: Contact, errors: Collection[str]) -> str:
         for name, row in rows.items()
         if name not in errors and getattr(contact, name, None) and not (name == "beta" and follows_surface(contact, errors))
     ]
-    counted = f"Intervals count the errors of {listed(known)}"
+    counted = f"Intervals count the errors of {listed(known)}{' as independent' if len(known) > 1 else ''}"
     return f"{counted}; {listed(exact)} count as exact." if exact else f"{counted}."
