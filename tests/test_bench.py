@@ -263,6 +263,7 @@ def test_what_is_no_series_is_refused_with_what_to_do(subtests, written):
         "at rest": ("speed [mm/s];COF\n0;.1\n0;.2\n0;.1\n", "no row is in motion"),
         "no friction": ("speed [mm/s];COF\n1;0\n1;0\n1;0\n", "friction is zero in all rows"),
         "per cent": ("speed [mm/s];COF\n1;20\n2;30\n", "if it is in percent"),
+        "force in mN": ("speed [mm/s];Fx [N];Fz [N]\n1;60;2\n2;50;2\n", "check the units of the forces"),
     }
     for name, (content, sentence) in bad.items():
         with subtests.test(name=name):

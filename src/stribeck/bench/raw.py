@@ -22,7 +22,7 @@ from stribeck.fits.repeats import FEWEST, errors_of_means
 from stribeck.fits.rig import MADE_FRICTION, column_of, measured, prepared, temperatures
 from stribeck.fits.stated import inputs_said
 from stribeck.fits.strokes import emptied, without_codes, without_codes_of_forces
-from stribeck.fits.values import LARGEST_FRICTION, checked, numbers
+from stribeck.fits.values import LARGEST_FRICTION, checked, numbers, what_may_be_wrong
 from stribeck.quantities.formats import format_error, format_si
 from stribeck.quantities.units import InputError, show
 
@@ -148,7 +148,7 @@ def _plausible(table: TextTable, name: str, friction: Array) -> tuple[TextTable,
     if 2 * out.sum() > np.isfinite(friction).sum():
         raise InputError(
             f"{table.path}: column {show(name)}: a friction coefficient of {np.nanmedian(np.abs(friction)):.3g} "
-            'is not plausible; if it is in percent, write [%] in the header or friction = "%" in [fit.units].'
+            f"is not plausible; {what_may_be_wrong(name)}."
         )
     which = f"with a friction coefficient above {LARGEST_FRICTION:g} in size, which is none (an overflow, or percent),"
     return emptied(table, name, out, which), np.where(out, np.nan, friction)

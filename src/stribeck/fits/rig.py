@@ -20,7 +20,7 @@ from stribeck.files.cells import decimal_of, is_named, normalised_header
 from stribeck.files.columns import has_dimension, si_factor, stated_in
 from stribeck.files.text_table import TextTable
 from stribeck.fits.repeats import FEWEST
-from stribeck.fits.values import dimension_of, is_set, named_in_case, numbers, undeclared, unit_in
+from stribeck.fits.values import MADE_FRICTION, dimension_of, is_set, named_in_case, numbers, undeclared, unit_in
 from stribeck.quantities.units import InputError, listed, show
 
 __all__ = ["MADE_FRICTION", "MADE_SPEED", "RIG", "column_of", "measured", "prepared", "temperature_note", "temperatures"]
@@ -75,7 +75,6 @@ BOTH_MOVE = (
 
 MADE_SPEED = "sum of speeds [m/s]"  # Header of the column of the speed that was made of others
 
-MADE_FRICTION = "friction of forces"  # Header of the column of friction that was made of forces
 
 # Headers of the columns of what is constant along each curve, made of columns that were measured.
 MADE_LOAD, MADE_RATIO, MADE_CURVE = "load", "slide_to_roll", "curve"

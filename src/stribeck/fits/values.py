@@ -17,7 +17,19 @@ from stribeck.files.columns import BARE, has_dimension, si_factor
 from stribeck.files.text_table import TextTable
 from stribeck.quantities.units import DIMENSIONS, InputError, show
 
-__all__ = ["ABSCISSAS", "Abscissa", "checked", "dimension_of", "is_set", "named_in_case", "numbers", "undeclared", "unit_in"]
+__all__ = [
+    "ABSCISSAS",
+    "MADE_FRICTION",
+    "Abscissa",
+    "checked",
+    "dimension_of",
+    "is_set",
+    "named_in_case",
+    "numbers",
+    "undeclared",
+    "unit_in",
+    "what_may_be_wrong",
+]
 
 Abscissa = Literal["speed", "speed_viscosity", "hersey_number", "hersey_per_length"]
 
@@ -43,6 +55,15 @@ DIMENSION = {
 UNITS = {"speed": "mm/s", "rotation": "rpm", "torque": "mN m"}  # Units of examples where rigs have other ones than cases
 
 LARGEST_FRICTION = 10.0  # Friction coefficient from which percent are suspected
+
+MADE_FRICTION = "friction of forces"  # Header of the column of friction that was made of forces
+
+
+def what_may_be_wrong(name: str) -> str:
+    """Return what a user checks where a column holds no plausible friction."""
+    if name == MADE_FRICTION:
+        return "check the units of the forces, the torque and its arm"
+    return 'if it is in percent, write [%] in the header or friction = "%" in [fit.units]'
 
 
 def named_in_case(table: TextTable, settings: FitSettings, meaning: str, error: str = "") -> list[str]:
@@ -118,18 +139,15 @@ def checked(table: TextTable, name: str, meaning: str, settings: FitSettings) ->
     values, cells = numbers(table, name, meaning, settings), table.column(name)
     for i in np.flatnonzero(~np.isnan(values)).tolist():
         where = f"{table.path}: row {table.numbers[i]}, column {show(name)}"
-        values[i] = _checked(float(values[i]), cells[i], meaning, where, settings)
+        values[i] = _checked(float(values[i]), cells[i], name, meaning, where, settings)
     return values
 
 
-def _checked(value: float, cell: str, meaning: str, where: str, settings: FitSettings) -> float:
+def _checked(value: float, cell: str, name: str, meaning: str, where: str, settings: FitSettings) -> float:
     if settings.magnitudes and meaning in (*ABSCISSAS, "friction"):
         value = abs(value)
     if meaning == "friction" and value > LARGEST_FRICTION:
-        raise InputError(
-            f"{where}: a friction coefficient of {value:g} is not plausible; if it is in percent, write [%] in the "
-            'header or friction = "%" in [fit.units].'
-        )
+        raise InputError(f"{where}: a friction coefficient of {value:g} is not plausible; {what_may_be_wrong(name)}.")
     if meaning == "error" and value <= 0:
         raise InputError(f"{where}: {show(cell)} must be positive; a standard error of zero would outweigh all rows.")
     if meaning in settings.inputs.quantities and meaning != "speed":
