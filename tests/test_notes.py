@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -193,6 +194,21 @@ def test_weights_of_groups_alone_are_said():
         "h_rms at alpha = 2" in note and f"{100 * dry / (dry + viscous):.2g} % of the friction, at boundary friction 1" in note
     )
     assert math.isfinite(solution.central_gap) and np.isfinite(dry)
+
+
+def test_notes_say_the_share_of_friction_that_asperities_have_in_rolling(subtests):
+    cylinder = sb.load_case(PDMS).contact.replace(speed=0.015)
+    same = {
+        name: getattr(cylinder, name) for name in ("modulus", "viscosity", "roughness", "alpha", "beta", "boundary_friction")
+    }
+    for contact in (cylinder, sb.PointContact(radius="10 mm", load="1 N", speed="60 mm/s", **same)):
+        for slide_to_roll in (2.0, 0.0):
+            with subtests.test(kind=type(contact).__name__, slide_to_roll=slide_to_roll):
+                state = sb.solve(contact.replace(slide_to_roll=slide_to_roll), rtol=1e-4)
+                [note] = [note for note in state.notes if "cause" in note]
+                assert float(re.findall(r"cause (\S+) %", note)[0]) == pytest.approx(
+                    100 * state.friction.contact_share, rel=0.06
+                )
 
 
 # --- suction that no film in the open bears ---

@@ -73,7 +73,7 @@ def range_at_centre(subject: Subject) -> Check | None:
     limit, common = (high if ratio > low else low), ""
     if notes:
         sentence = " ".join(notes)
-    elif matters(contact, state.observables):
+    elif matters(state.groups, contact, state.observables):
         common = _in_common(contact, ratio)
         sentence = f"The central gap is {ratio:.3g} h_rms, inside the range of the contact law.{common}"
     else:

@@ -8,6 +8,8 @@ from stribeck._types import Array
 from stribeck.contact_laws.finite_surface import has_endless_tail
 from stribeck.contact_laws.law import is_exponential, largest_load
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction import friction_share
+from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.fluids.fluid import Film
 from stribeck.quantities.formats import format_percent, format_si
@@ -89,7 +91,7 @@ def law_notes(
     """Return the sentences that say where the contact law leaves its range while asperities still matter."""
     if groups.roughness == 0:
         return ()
-    shares = _shares(contact, values, given)
+    shares = _shares(groups, contact, values, given)
     if not max(shares) > NEGLIGIBLE_SHARE:
         return ()
     ratio, measured = _gap_ratio(groups, contact, values)
@@ -116,9 +118,9 @@ def law_notes(
     return (*notes, *far)
 
 
-def matters(contact: Contact | None, values: Values) -> bool:
+def matters(groups: Groups, contact: Contact | None, values: Values) -> bool:
     """Return whether asperities have more than 1 % of load or friction, so that their contact law matters."""
-    return max(_shares(contact, values)) > NEGLIGIBLE_SHARE
+    return max(_shares(groups, contact, values)) > NEGLIGIBLE_SHARE
 
 
 def minimum_note(groups: Groups, contact: Contact | None, values: Values, friction: float, where: str) -> str:
@@ -143,13 +145,16 @@ def _gap_ratio(groups: Groups, contact: Contact | None, values: Values) -> tuple
     return values.central_gap / float(groups.relative_roughness) / alpha, measured
 
 
-def _shares(contact: Contact | None, values: Values, given: tuple[float, float] | None = None) -> tuple[float, float]:
+def _shares(
+    groups: Groups, contact: Contact | None, values: Values, given: tuple[float, float] | None = None
+) -> tuple[float, float]:
     """Return the asperities' shares of load and friction."""
     boundary, beta = (1.0, USUAL_BETA) if given is None else given
     if contact is not None:
         boundary, beta = contact.friction_of_asperities.coefficient_at_small_area(contact), contact.beta
-    dry, viscous = boundary * values.contact_load_share, values.viscous_friction(beta)
-    return values.contact_load_share, dry / (dry + viscous) if dry > 0 else 0.0
+    rule = RULES[groups.geometry]
+    dry = boundary * values.contact_load_share * rule.sliding_factor(groups, rule.of_contact(contact))
+    return values.contact_load_share, float(friction_share(dry, values.viscous_friction(beta)))
 
 
 def _range(groups: Groups) -> str:
