@@ -316,6 +316,12 @@ def test_the_stated_error_of_the_offset_holds_where_it_crosses_zero(subtests):
                 assert abs(fine[name] - coarse[name]) < coarse[f"{name}_error"], name
 
 
+def test_the_largest_pressure_may_lie_between_the_nodes():
+    contact = CONTACT.replace(load=30.0, speed=1.0)
+    coarse, fine = (sb.solve(contact, rtol=rtol).maximum_pressure for rtol in (1e-2, 1e-8))
+    assert coarse == pytest.approx(fine, rel=2e-4)
+
+
 def test_contacts_too_wide_for_a_half_space_are_noted(subtests):
     for modulus, wide in [(4.5e4, False), (4e4, True)]:
         with subtests.test(modulus=modulus, wide=wide):

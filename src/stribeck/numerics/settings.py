@@ -58,6 +58,7 @@ MAX_STEPS_ON_PATH = 15  # Newton steps towards such a state; with more, a golden
 MAX_PANELS = 128  # Panels of a mesh of the line
 # Nodes that panels gain for the error estimate: with two it sees a fifth of errors on wide panels; even.
 EXTRA_NODES = 4
+PLACES_AROUND_NODE = 65  # At which the peak of the pressure is sought: it errs by a thousandth of what the highest node does
 DEFECT_SAFETY = 3.0  # Stated error over that estimated on finer nodes; with two, four of 864 golden states of the line miss it
 SPLIT_MARGIN = 1.05  # Number of panels over that which just resolves the fields; with less, states need another refinement
 SIGN_PATTERNS = 5  # Patterns of signs of rounding errors: their mean square is right within a factor of two, with fewer not

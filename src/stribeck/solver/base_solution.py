@@ -17,6 +17,7 @@ from stribeck.contacts.groups import Groups
 from stribeck.contacts.notes import law_notes
 from stribeck.files.datasets import Column, new_dataset, number_columns
 from stribeck.files.results import Exported
+from stribeck.numerics.settings import PLACES_AROUND_NODE
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
@@ -151,9 +152,11 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
 
     @property
     def maximum_pressure(self) -> float:
-        """Largest pressure of asperities and fluid together at the nodes along a contact in SI units [Pa]."""
+        """Largest pressure of asperities and fluid together along a contact in SI units [Pa]."""
         scale = self._hertz("maximum_pressure").pressure
-        return float(self.pressure.max()) * scale
+        highest = int(np.clip(np.argmax(self.pressure), 1, len(self.x) - 2))
+        around = np.linspace(self.x[highest - 1], self.x[highest + 1], PLACES_AROUND_NODE)
+        return float(self.profile(around).pressure.max()) * scale
 
     def _scales(self) -> HertzScales:
         """Return the scales in which fields are given in SI units."""
