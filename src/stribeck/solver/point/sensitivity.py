@@ -45,7 +45,8 @@ def state_derivatives(
     groups = state.groups
     alive = {name: _by_group(groups, name) for name in GROUPS if name in by and float(getattr(groups, name)) > 0}
     if not alive:
-        return {name: np.zeros(len(GROUPS)) for name in state.values}
+        fine = state.work.fine
+        return {name: np.zeros(len(GROUPS)) for name in measure(fine.equations, fine.unknowns)}
     found = derivatives_along(state, alive, measure, tolerance)
     zero = np.array([name not in alive for name in GROUPS])
     columns = np.cumsum(~zero) - 1
