@@ -104,7 +104,8 @@ class Surface(Exported, Told):
         alpha, beta = self.limits
         measured = exponential_limit(self.spectrum, self.gamma)
         with_spikes = f"rms height with {spikes} spike{'s' * (spikes > 1)}" if spikes else ""
-        lengths = [(name, getattr(r, name), fitted.get(name)) for name in WAVES]
+        seen = [name for name in WAVES if name != "roll_off" or name in self.fit.found]
+        lengths = [(name, getattr(r, name) if name in seen else None, fitted.get(name)) for name in WAVES]
         body = f"radius of the {convex} body" if radius else ""
         density = "m3" if self.measured.is_line else "m4"
         wider = "angle to the first axis of the direction in which features are longer"
