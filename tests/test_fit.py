@@ -216,6 +216,13 @@ def test_intervals_of_what_is_not_determined_hold_each_other_and_what_fits_as_we
     assert found["boundary_friction"].interval_95[1] > 5.2
 
 
+def test_a_wide_interval_holds_the_narrow_one_where_the_profile_goes_up_and_down():
+    true = TRUE.replace(modulus="2.3 MPa", roughness="1.3 um", boundary_friction=0.62)
+    data = noisy(100, 0.03, contact=true, low=0.3, high=3.0, rows=8)
+    for each in sb.fit(data, TRUE, free=["boundary_friction", "roughness", "modulus"]).inputs:
+        assert each.interval_95[0] <= each.interval_68[0] and each.interval_68[1] <= each.interval_95[1]
+
+
 def test_residuals_with_one_degree_of_freedom_have_no_order_to_judge():
     found = sb.fit(noisy(3, rows=4), NEAR, free=["boundary_friction", "roughness", "modulus"], intervals=False)
     assert found.quality.degrees_of_freedom == 1

@@ -165,10 +165,11 @@ def _side(
         on_point()
         return best[1]
 
-    ends = []
+    ends, distance = [], 0.0
     for threshold in thresholds:
-        target = math.sqrt(threshold)
-        ends.append(float(at.theta[i]) + sign * _crossing(root_excess, known, target, width, reach))
+        # A profile that is not monotone crosses a level more than once: the wider interval holds the narrower one.
+        distance = max(distance, _crossing(root_excess, known, math.sqrt(threshold), width, reach))
+        ends.append(float(at.theta[i]) + sign * distance)
     return ends
 
 
