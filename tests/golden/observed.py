@@ -228,6 +228,8 @@ def finite(number):
 def faults(case, old, new):
     """Return in sentences where what was observed differs by more than both stated errors, or states a far larger error."""
     found = []
+    # Errors that rounding leaves are those of a processor: one and a thousand times as much are stated of the same state.
+    unjudged = PLACES if old["words"].get("outcome") != "ROUNDING" else old["values"].keys()
     for name in sorted(old["words"].keys() | new["words"].keys()):
         was, now = old["words"].get(name), new["words"].get(name)
         if was != now:
@@ -242,6 +244,6 @@ def faults(case, old, new):
         allowed = sum(each for each in (wide, width) if math.isfinite(each)) + ROUNDING * abs(was)
         if not abs(now - was) <= allowed:
             found.append(f"{name} was {was:.12g} and is {now:.12g}, {abs(now - was):.2g} away; the errors allow {allowed:.2g}")
-        if name not in PLACES and math.isfinite(wide) and not width <= GROWTH * wide + ROUNDING * abs(was):
+        if name not in unjudged and math.isfinite(wide) and not width <= GROWTH * wide + ROUNDING * abs(was):
             found.append(f"the stated error of {name} was {wide:.2g} and is {width:.2g}")
     return [f"{sentence}: {case}" for sentence in found]
