@@ -83,6 +83,7 @@ SIZES = {
     "of both axes": "Scan size: 48 x 24 um\nZ unit: um\n",
     "of both axes with units": "Scan Size: 48 µm x 24 µm\nData unit: Micrometer\n",
     "per pixel": "X scale: 1000 nm per pixel\nY scale: 500 nm/pixel\nz unit: um\n",
+    "by the unit alone": "Resolution X: 1000 nm/pixel\nResolution Y: 500 nm/pixel\nz unit: um\n",
 }
 
 
