@@ -75,7 +75,6 @@ BOTH_MOVE = (
 
 MADE_SPEED = "sum of speeds [m/s]"  # Header of the column of the speed that was made of others
 
-
 # Headers of the columns of what is constant along each curve, made of columns that were measured.
 MADE_LOAD, MADE_RATIO, MADE_CURVE = "load", "slide_to_roll", "curve"
 

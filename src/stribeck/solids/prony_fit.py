@@ -244,11 +244,8 @@ def from_master_curve(path: str | os.PathLike[str], *, poisson_ratio: float = 0.
     InputError
         Where the file cannot be read or has no such columns, or its values allow no fit.
     """
-    from stribeck.files.columns import (
-        Column,
-        is_called_or_signed,
-        read_columns,
-    )  # slow to import, and most solids have no file
+    # Slow to import, and most solids have no file
+    from stribeck.files.columns import Column, is_called_or_signed, read_columns
 
     advice = (
         "name the columns 'frequency [Hz]', E' [MPa] and E'' [MPa] of tension or G' [MPa] and G'' [MPa] of shear, or "

@@ -112,7 +112,9 @@ class SelfAffineFit(Described):
     noise: Annotated[float, "spectrum of the white noise, as that of the measurement; 0 where none was found"]
     deviance: Annotated[float, "deviance over its expectation: near one where the model holds", "1"]
     band: Annotated[tuple[float, float], "wave numbers that were fitted", "1/m"]
-    _admissible: tuple[FitParameters, ...] = field(repr=False)  # first those of the fit, then of others with a longest wave
+    _admissible_fits: tuple[FitParameters, ...] = field(
+        repr=False
+    )  # first those of the fit, then of others with a longest wave
 
     def exponential_limit(self, gamma: float = GAMMA) -> tuple[Estimate, Estimate]:
         """Return alpha and beta of the contact law, each with its 95 % interval.
@@ -135,9 +137,9 @@ class SelfAffineFit(Described):
         longest wave was seen, ``beta`` has no lower bound, and its interval begins at 0.  How often the intervals hold the
         truth is in docs/surfaces.md, from ``benchmarks/surface_errors.py``.
         """
-        known = self._admissible[0]
+        known = self._admissible_fits[0]
         best = np.log(exponential_limit(known.surface(known.theta), gamma))
-        hidden = [(each, ends) for each in self._admissible for ends in each.admissible_extensions]
+        hidden = [(each, ends) for each in self._admissible_fits for ends in each.admissible_extensions]
         profile = np.array([np.log(exponential_limit(each.surface(each.theta, *ends), gamma)) for each, ends in hidden])
         low, high = np.empty(2), np.empty(2)
         for i in (0, 1):
@@ -159,7 +161,7 @@ class SelfAffineFit(Described):
     @property
     def beta_of_shorter_waves(self) -> float:
         """Largest beta over the value, if the power law goes on to shorter waves than were seen."""
-        known = self._admissible[0]
+        known = self._admissible_fits[0]
         ends = (exponential_limit(known.surface(known.theta, finest=finest))[1] for finest in (False, not known.q1_found))
         seen, all_waves = ends
         return all_waves / seen
@@ -404,7 +406,7 @@ def _model(theta: Array, data: MeasuredSpectrum, centre: float, longest: float, 
 # --- from the parameters of the fit to those of the surface ---
 
 
-def _admissible(chosen: _Trial, data: MeasuredSpectrum) -> tuple[FitParameters, ...]:
+def _admissible_fits(chosen: _Trial, data: MeasuredSpectrum) -> tuple[FitParameters, ...]:
     """Return the parameters of a fit, and of those with a longest wave in the scan that fit no worse than by chance."""
     scale = max(1.0, _excess(chosen, data))
 
@@ -458,7 +460,7 @@ def _excess(trial: _Trial, data: MeasuredSpectrum) -> float:
 
 
 def _result(trial: _Trial, data: MeasuredSpectrum) -> SelfAffineFit:
-    admissible = _admissible(trial, data)
+    admissible = _admissible_fits(trial, data)
     parameters, q = admissible[0], data.wavenumber
     theta = parameters.theta
     values, turn = parameters.physical(theta), central_differences(parameters.physical, theta)
@@ -480,5 +482,5 @@ def _result(trial: _Trial, data: MeasuredSpectrum) -> SelfAffineFit:
         noise=math.exp(trial.values[-1]) if trial.noise else 0.0,
         deviance=float(_excess(trial, data)),
         band=(float(q[trial.low]), float(q[trial.high - 1])),
-        _admissible=admissible,
+        _admissible_fits=admissible,
     )

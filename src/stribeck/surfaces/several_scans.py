@@ -200,7 +200,9 @@ def combine(surfaces: Sequence[Surface]) -> CombinedSurface:
               for name, error in own.errors.items()}  # fmt: skip
     gamma, notes = gammas[0], _notes(found, own)
     numbers = np.log([exponential_limit(each.roughness, gamma) for each in found]).T
-    profile = replace(own, _admissible=tuple(replace(each, covariance=0 * each.covariance) for each in own._admissible))
+    profile = replace(
+        own, _admissible_fits=tuple(replace(each, covariance=0 * each.covariance) for each in own._admissible_fits)
+    )
     limits = []
     for stated, hidden, logs in zip(own.exponential_limit(gamma), profile.exponential_limit(gamma), numbers, strict=True):
         half = _half_width(logs)
