@@ -751,6 +751,27 @@ def test_the_curve_and_its_transitions_are_those_of_the_solver(answer):
         assert abs(math.log(mark.value / marks[words])) < mark.error
 
 
+def test_gap_and_pressure_are_drawn_as_they_are_within_their_axes(subtests, answer):
+    hertz, profile = START.contact.hertz, answer.profile
+    pressures = {"total": profile.pressure, "contact": profile.contact_pressure, "fluid": profile.fluid_pressure}
+    expected = {
+        "gap": {"gap": hertz.indentation * profile.gap, "rms": np.full(2, START.contact.roughness)},
+        "pressure": {key: hertz.pressure * each for key, each in pressures.items()},
+    }
+    unit = {"nm": 1e-9, "µm": 1e-6, "Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "mm": 1e-3}
+    drawn = charts.all_charts(answer)
+    for name, lines in expected.items():
+        along, up = drawn[name]["x"], drawn[name]["y"]
+        for series in drawn[name]["series"]:
+            x, y = np.array(series["data"], float).T
+            with subtests.test(chart=name, series=series["id"]):
+                assert along["low"] <= x.min() and x.max() <= along["high"] and up["low"] <= y.min() and y.max() <= up["high"]
+                if series["id"] in lines:
+                    assert np.allclose(unit[up["unit"]] * y, lines[series["id"]], rtol=1e-5)
+                    ends = unit[along["unit"]] * x[[0, -1]]
+                    assert np.allclose(ends, hertz.half_width * profile.x[[0, -1]], rtol=1e-5)
+
+
 def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marked_stale():
     heavy = inputs.from_case(sb.load_case(EXAMPLES / "nitrile_seal.toml"))
     model = Answerer()

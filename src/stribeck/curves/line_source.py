@@ -238,6 +238,6 @@ class LineSource(Source):
             return float(self.slopes(np.array([s]), coefficients)[0])
         state = self._states[s, rtol].state
         assert state is not None
-        model, rubbing = state.groups.model, self.sliding * friction.factor(None)
-        slopes, _ = derivatives_along(state, self.coordinate.direction, (model, model, 1.0))
+        rubbing = self.sliding * friction.factor(None)
+        slopes, _ = derivatives_along(state, self.coordinate.direction)
         return float(rubbing * slopes[ROW[friction.observable]] + beta * slopes[ROW[f"viscous_{definition}"]])

@@ -39,9 +39,9 @@ def log_derivatives(state: State, beside: Sequence[Change] = ()) -> dict[str, Ar
     return dict(zip((*ALL_NAMES, AREA), (*found.T, area_derivatives(state, moves)), strict=True))
 
 
-def derivatives_along(state: State, direction: Array, change: Change) -> tuple[Array, Array]:
+def derivatives_along(state: State, direction: Array, change: Change | None = None) -> tuple[Array, Array]:
     """Return the derivatives of all observables, and of the unknowns, along a path: of ln(groups), and by its model."""
-    found, forces = _partials(state, direction[None], [] if change[0] == change[1] else [change])
+    found, forces = _partials(state, direction[None], [] if change is None or change[0] == change[1] else [change])
     move = _moves(state, forces.sum(axis=0))
     return found.sum(axis=0) + _changes(state, move), move
 

@@ -81,7 +81,6 @@ def _passages(
     place = np.argmax(rising, axis=-1)
     place[2] = rising.shape[-1] - 1 - np.argmax(rising[2, :, ::-1], axis=-1)
     some = np.asarray(rising.any(axis=-1))
-    some[:2] &= values[:2, :, 0] < 0
     found = np.where(values[..., 0] >= 0, -np.inf, np.inf)
     error = np.zeros(found.shape)
     which, rows = np.nonzero(some)
