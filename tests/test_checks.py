@@ -286,6 +286,22 @@ def test_what_fluid_cavitation_and_solid_solve_counts_as_fine():
     assert "Thinning is modelled (carreau)" in checks_of(Subject(thins), "state")["shear rate"].sentence
 
 
+def test_all_doubts_of_the_answer_stand_in_full_where_everything_is_printed(subtests, capsys, tmp_path):
+    """They stood shortened in the answer, and not at all with -v, which left out what is no note of the state."""
+    path = tmp_path / "case.toml"
+    path.write_text(case_text(check={"loss_tangent": "0.2", "layer_thickness": '"0.5 mm"'}))
+    doubtful = [
+        each.sentence for each in checks_of(Subject(TRUE, {"loss_tangent": 0.2, "layer_thickness": 5e-4}), "contact").said
+    ]
+    assert len(doubtful) == 2
+    for command in (("solve",), ("curve", *FEW), ("regimes",)):
+        with subtests.test(command=command[0]):
+            said = call(capsys, command[0], path, *command[1:], "-v").out
+            assert [f"Doubtful: {sentence}" for sentence in doubtful] == re.findall(
+                r"^Doubtful: The (?:con|loss).*$", said, re.M
+            )
+
+
 # --- inputs, adhesion, pores, the law apart ---
 
 

@@ -98,8 +98,8 @@ def test_the_json_of_a_state_has_exactly_these_keys(capsys):
     found = strict_json(call(capsys, "solve", PDMS, "--json").out)
     table = sb.solve(sb.load_case(PDMS).contact).to_dataset()
     numbers = {name for name in table.data_vars if not table[name].dims}
-    others = ("applies checks geometry contact_law contact_law_parameters model inputs units speed_group load_group "
-              "roughness_group rtol nodes outcome message notes")  # fmt: skip
+    others = ("applies checks definition geometry contact_law contact_law_parameters model inputs units speed_group "
+              "load_group roughness_group rtol nodes outcome message notes")  # fmt: skip
     assert set(found) == {*others.split(), *numbers}
     for name in ("friction_balanced", "friction_published", "minimum_film_thickness", "lambda_ratio"):
         assert 0 < found[f"{name}_error"] < 1e-5 * found[name]

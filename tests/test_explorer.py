@@ -80,7 +80,7 @@ def solve(model, now, number=0):
     return bool(list(model.at_rest(now)[number](always)))
 
 
-SPREAD, CHECKS = 4, 5
+MARGINS, SPREAD, CHECKS = 3, 4, 5
 """Numbers of the parts that find what errors of the inputs do, and the checks."""
 
 
@@ -653,6 +653,9 @@ def test_a_fit_takes_the_inputs_that_are_chosen_and_tells_intervals_and_residual
     [only] = fitted.found.inputs
     assert only.name == "boundary_friction" and only.interval_95[0] < 0.4 < only.interval_95[1]
     assert fitted.inputs == START.edited({"boundary_friction": only.value})
+    published = START.replace(definition="published")  # as the curve beside the points, and the command
+    [other] = fit_measured(published, measured, lambda *_: None, ["boundary_friction"]).found.inputs
+    assert other.value == sb.fit(measured.source, published.case, free=["boundary_friction"]).inputs[0].value != only.value
     assert fitted.report.startswith("Fitted to m.csv: dry friction coefficient 0.")
     chart = charts.residual_chart(fitted.found)
     [points] = [each["data"] for each in chart["series"] if each["type"] == "points"]
@@ -734,6 +737,12 @@ def test_the_numbers_are_those_of_solve_within_their_errors():
     for key in ("friction_published", "friction_balanced", "fluid_load_share", "central_film_thickness", "lambda_ratio"):
         assert abs(rows[key].value - expected[key]) <= 2 * rows[key].error, key
     assert rows["hersey_number"].value == expected["hersey_number"] and rows["hersey_number"].error == 0
+
+
+def test_a_share_of_asperities_below_its_error_is_shown_as_a_bound():
+    now = START.edited({"speed": "10 m/s"})
+    [row] = [row for row in table.numbers(Answerer()(now)) if row.key == "contact_friction_share"]
+    assert 0 < row.value < row.error and re.fullmatch(r"< \de-0[67]", row.text)
 
 
 def test_the_curve_and_its_transitions_are_those_of_the_solver(answer):
@@ -1162,6 +1171,7 @@ def uncertain(tmp_path_factory):
     shown, model = inputs.from_case(case), Answerer()
     model(shown)
     assert solve(model, shown, SPREAD) and not solve(model, shown, SPREAD) and solve(model, shown, CHECKS)
+    assert solve(model, shown, MARGINS)
     return case, model(shown)
 
 
@@ -1170,7 +1180,7 @@ def test_the_numbers_have_the_intervals_of_the_command_and_the_curve_has_their_b
     rows = {row.key: row for row in table.numbers(answer)}
     low, high = sb.propagate(case.contact, case.errors)["friction"].interval_95
     assert rows[f"friction_{case.definition}"].interval == f"{low:.3g} to {high:.3g}"
-    assert any("count as exact" in each for each in parts_of(answer)["remarks"])
+    assert sum("count as exact" in each for each in parts_of(answer)["remarks"]) == 1
     assert not any(each["interval"] for each in parts_of(Answerer()(START))["numbers"])
     assert answer.checks.headline.split(":")[0] in str(sb.check(case.contact, **case.facts)).split("\n")[0]
     band = answer.curve.band

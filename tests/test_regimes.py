@@ -207,6 +207,18 @@ def test_the_command_says_what_it_takes_to_reach_each_neighbour(capsys, tmp_path
     assert {"contact-law alpha", "contact-law beta"} <= rows
 
 
+def test_all_outputs_judge_the_regime_by_the_definition_of_the_case(subtests, capsys, tmp_path):
+    """``solve -v`` and JSON took the balanced one, and a surface that nearly rolls had two regimes."""
+    path = tmp_path / "case.toml"
+    for definition, regime in (("balanced", "mixed"), ("published", "hydrodynamic")):
+        with subtests.test(definition=definition):
+            path.write_text(case_text({"slide_to_roll": "2.5e-6"}, solver={"definition": f'"{definition}"'}))
+            found = json.loads(call(capsys, "solve", path, "--json").out)
+            assert (found["definition"], found["regime"]) == (definition, regime)
+            assert f"{regime.capitalize()} lubrication at" in call(capsys, "solve", path).out
+            assert f"\nRegime: {regime}.\n" in call(capsys, "solve", path, "-v").out
+
+
 def test_the_command_has_words_for_the_corners(subtests, capsys, tmp_path):
     only_speed = "speed from zero to 367.9 µm/s; not reachable by changing load, roughness, viscosity."
     for changes, sentence in [

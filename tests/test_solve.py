@@ -11,6 +11,7 @@ from numpy.polynomial import legendre
 
 import stribeck as sb
 from stribeck import Outcome
+from stribeck.checks.table import checks_of_solution
 from stribeck.numerics.panels import reference
 from stribeck.solids import HalfPlane
 
@@ -320,6 +321,17 @@ def test_the_largest_pressure_may_lie_between_the_nodes():
     contact = CONTACT.replace(load=30.0, speed=1.0)
     coarse, fine = (sb.solve(contact, rtol=rtol).maximum_pressure for rtol in (1e-2, 1e-8))
     assert coarse == pytest.approx(fine, rel=2e-4)
+
+
+def test_the_largest_suction_lies_between_the_nodes_for_checks_too():
+    """They had that of the nodes, 1 % less or more from one tolerance to another, beside a note with the other."""
+    contact = CONTACT.replace(load=30.0)
+    fine = sb.solve(contact, rtol=1e-8)
+    x = np.linspace(0.5, 2.0, 15001)
+    suction = -float(fine.profile(x).fluid_pressure.min()) * contact.hertz.pressure
+    assert fine.largest_suction == pytest.approx(suction, rel=1e-5) and suction > 1e3
+    for rtol in (1e-3, 1e-4, 1e-6):
+        assert checks_of_solution(sb.solve(contact, rtol=rtol))["suction"].value == pytest.approx(suction, rel=5e-5)
 
 
 def test_contacts_too_wide_for_a_half_space_are_noted(subtests):

@@ -64,7 +64,7 @@ def suction(subject: Subject) -> Check:
         return Check("suction", 0.0, ATMOSPHERE, "fine", f"Cavitation is modelled ({subject.models('cavitation')}).", "Pa")
     if contact.speed == 0:
         return Check("suction", 0.0, ATMOSPHERE, "fine", "At rest there is no suction.", "Pa")
-    value = max(0.0, -float(subject.solution.fluid_pressure.min()) * contact.hertz.pressure)
+    value = subject.solution.largest_suction
     sentence = note or (
         f"Suction behind the contact is {number_text(value, 'Pa')}, less than an atmosphere; with air at the outlet the film "
         "may break even so."

@@ -46,12 +46,13 @@ def report_lines(
     yield from filter(None, (first, case.title if case else ""))
     yield from () if more else _constant(result)
     yield from body
-    if more:
-        yield from _doubts(checks, notes)
-        yield more
+    if not more:
+        yield from (*_doubts(checks, notes, is_full=True), *conversion_lines(case))
         return
-    yield from (f"Note: {note}" for note in notes if checks is None or not checks.covers(note))
-    yield from conversion_lines(case)
+    # A first line that says much leaves less room below.
+    room = NOTE_LINES - (len(checks.first_line) // SCREEN_WIDTH if checks is not None else 0)
+    yield from _shortened(_doubts(checks, notes), max(1, room))
+    yield more
 
 
 def _constant(result: BaseSolution | StribeckCurve) -> Iterator[str]:
@@ -110,14 +111,19 @@ def conversion_lines(case: Case | None) -> list[str]:
     return [f"Converted: {sentence}" for sentence in case.conversions] if case else []
 
 
-def _doubts(checks: Checks | None, notes: Sequence[str]) -> list[str]:
-    """Return what the first line leaves of doubtful checks and of notes, shortened to a few lines of a terminal."""
-    sentences = [f"Note: {note}" for note in notes if checks is None or not checks.covers(note, doubts=True)]
-    if checks is not None:
-        doubtful = (each.sentence for each in checks.with_verdict("doubtful") if each.sentence not in checks.first_line)
-        sentences = [*(f"Doubtful: {sentence}" for sentence in doubtful), *sentences]
-    # A first line that says much leaves less room below.
-    room = max(1, NOTE_LINES - (len(checks.first_line) // SCREEN_WIDTH if checks is not None else 0))
+def _doubts(checks: Checks | None, notes: Sequence[str], *, is_full: bool = False) -> list[str]:
+    """Return what the first line leaves of doubtful checks and of notes; each once, in full as a note, which says more."""
+    said = [f"Note: {note}" for note in notes if checks is None or not checks.covers(note, doubts=not is_full)]
+    if checks is None:
+        return said
+    doubts = (each.sentence for each in checks.with_verdict("doubtful") if each.sentence not in checks.first_line)
+    told = tuple(notes) if is_full else ()
+    left = (each for each in doubts if not any(note.startswith(each.rstrip(".")) for note in told))
+    return [*(f"Doubtful: {each}" for each in left), *said]
+
+
+def _shortened(sentences: Sequence[str], room: int) -> list[str]:
+    """Return as many sentences as there are lines for, shortened to these lines of a terminal."""
     lines = max(1, room // max(1, len(sentences)))
     return [textwrap.shorten(each, lines * SCREEN_WIDTH, placeholder=" ...") for each in sentences[:room]]
 
@@ -140,7 +146,8 @@ def solution_lines(
     body = _coefficients(solution, *given)
     if verbose:
         body += number_lines(report_rows(solution, *given))
-        body.append(f"Regime: {regime_of(solution.fluid_load_share, solution.friction(*given).contact_share)}.")
+        share = solution.friction(*given, definition).contact_share
+        body.append(f"Regime: {regime_of(solution.fluid_load_share, share)}.")
         # The tolerance holds neither the minimum film of a ball nor the sum of the parts of friction.
         friction = max(solution.friction(*given, each).relative_error for each in DEFINITIONS)
         others = {"minimum film": getattr(solution, "minimum_gap_error", 0.0), "friction": friction}

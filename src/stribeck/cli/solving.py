@@ -67,10 +67,18 @@ def solve_command(
     written, problems = outputs.write(solution, loaded.title if loaded else "")
     from stribeck.checks.table import checks_of_solution
     from stribeck.cli import reports
+    from stribeck.solver.base_solution import regime_of_state
 
     checks = checks_of_solution(solution, loaded.facts) if loaded else None
     said = solution, loaded, mu, b, checks, verbose
-    answer(outputs.json, lambda: solution.to_dict(mu, b), lambda: reports.solution_lines(*said), checks, loaded, written)
+
+    def content() -> dict[str, Any]:
+        found: dict[str, Any] = solution.to_dict(mu, b)
+        if loaded:
+            found |= {"definition": loaded.definition, "regime": regime_of_state(solution, loaded.definition)}
+        return found
+
+    answer(outputs.json, content, lambda: reports.solution_lines(*said), checks, loaded, written)
     return complain("\n".join(problems), EXIT_BAD_INPUT if problems else 0)
 
 

@@ -79,7 +79,10 @@ def state_rows(solution: BaseSolution, definition: Definition) -> Iterator[Row]:
     friction = solution.friction(definition=definition)
     share = friction.contact_share, friction.relative_error
     numbers = [each for each in report_rows(solution) if each.name not in LEFT_OUT]
-    for each in (*numbers, Number("contact_friction_share", SHARE, f"{SHARE}: the rest is shear of the fluid", *share)):
+    of_asperities = Number(
+        "contact_friction_share", SHARE, f"{SHARE}: the rest is shear of the fluid", *share, is_bounded=True
+    )
+    for each in (*numbers, of_asperities):
         value, error = map(_plain, each.texts)
         tip = "from the inputs" if each.error == 0 else error
         yield Row(each.name, each.label[0].upper() + each.label[1:], each.value, each.error, value, each.meaning, tip)
@@ -154,7 +157,7 @@ def notes_of_state(answer: Answer) -> list[str]:
     notes = [note for note in answer.solution.notes if not answer.checks.covers(note)]
     margins = answer.margins
     about = [margins.counted, *margins.notes] if isinstance(margins, RegimeMargins) else [without_rtol(margins or "")]
-    return notes_of([*notes, *([] if answer.spread is None else answer.spread.sources), *about])
+    return notes_of(dict.fromkeys([*notes, *([] if answer.spread is None else answer.spread.sources), *about]))
 
 
 def comparison(answer: Answer) -> list[list[str]]:

@@ -87,7 +87,8 @@ def free_inputs(now: Inputs) -> list[tuple[str, str, bool]]:
 def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object], free: Sequence[str] = ()) -> Fitted:
     """Fit inputs to the measured curves of a file: those named, or of the case under ``[fit]``, or the usual ones."""
     free = free or now.tables.get("fit", {}).get("free") or DEFAULT_FREE
-    found = fit(measured.source, now.contact, free=free, on_step=on_step)
+    case = replace(now.case, fit=FitSettings.of(now.contact))  # priors and bounds are for the command
+    found = fit(measured.source, case, free=free, on_step=on_step)
     values = {each.name: each.value for each in found.inputs if each.name in now.fields and not each.is_factor}
     after = now.edited(values)
     fitted = ", ".join(f"{now.fields[name].label.lower()} {now.table.text(name, value, 3)}" for name, value in values.items())

@@ -154,9 +154,18 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
     def maximum_pressure(self) -> float:
         """Largest pressure of asperities and fluid together along a contact in SI units [Pa]."""
         scale = self._hertz("maximum_pressure").pressure
-        highest = int(np.clip(np.argmax(self.pressure), 1, len(self.x) - 2))
-        around = np.linspace(self.x[highest - 1], self.x[highest + 1], PLACES_AROUND_NODE)
-        return float(self.profile(around).pressure.max()) * scale
+        return float(self._around(int(np.argmax(self.pressure))).pressure.max()) * scale
+
+    @property
+    def largest_suction(self) -> float:
+        """Largest pressure of the fluid below the ambient along a contact in SI units [Pa]; zero where it is nowhere below."""
+        scale = self._hertz("largest_suction").pressure
+        return max(0.0, -float(self._around(int(np.argmin(self.fluid_pressure))).fluid_pressure.min())) * scale
+
+    def _around(self, node: int) -> Profile:
+        """Return the fields between the neighbours of a node of :attr:`x`."""
+        node = min(max(node, 1), len(self.x) - 2)
+        return self.profile(np.linspace(self.x[node - 1], self.x[node + 1], PLACES_AROUND_NODE))
 
     def _scales(self) -> HertzScales:
         """Return the scales in which fields are given in SI units."""
