@@ -20,6 +20,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -57,30 +58,33 @@ class Capacitance:
     mesh: PolarMesh
     shape: tuple[int, int]
     nodes: Indices = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
-    answers: Single = field(init=False)
-    """Z: changes of total pressure by mode and of the offset, shape (size + 1, nodes)."""
-    totals: Single = field(init=False)
-    gaps: Single = field(init=False)
-    """Z at the nodes of the mesh: total pressure and gap, shape (size, nodes)."""
-    last: Preconditioner | None = None
-
-    def __post_init__(self) -> None:
-        """Begin without nodes."""
-        self.answers, self.totals, self.gaps = (np.zeros((self.mesh.size + last, 0), dtype=np.float32) for last in (1, 0, 0))
+    answers: list[Single] = field(default_factory=list)
+    """Z: changes of total pressure by mode and of the offset, shape (size + 1, nodes), a few nodes at a time."""
+    pressed: Single = field(default_factory=lambda: np.zeros((2, 0, 0), dtype=np.float32))
+    """Total pressure and gap of Z at the kept nodes, shape (2, nodes, nodes)."""
+    linear: CavitatedLinear | None = None
+    """The Jacobian that it is about the inverse of."""
+    columns: Indices = field(init=False)
+    """Cavitated nodes of that, as places among the kept ones."""
+    factors: tuple[Any, ...] = field(init=False)
 
     def include(self, linear: CavitatedLinear) -> None:
         """Add the cavitated nodes that are new."""
-        new = np.setdiff1d(np.flatnonzero(linear.cavitated), self.nodes)
+        new, old = np.setdiff1d(np.flatnonzero(linear.cavitated), self.nodes), self.nodes.size
         if new.size == 0:
             return
         self.nodes = np.append(self.nodes, new)
         # A ring of nodes at a time: their arrays stay in the cache.
-        parts = [self._answers(linear, new[at : at + self.mesh.rings]) for at in range(0, new.size, self.mesh.rings)]
-        kept = (self.answers, self.totals, self.gaps)
-        self.answers, self.totals, self.gaps = (np.hstack(each) for each in zip(kept, *parts, strict=True))
+        self.answers += [self._answers(linear, new[at : at + self.mesh.rings]) for at in range(0, new.size, self.mesh.rings)]
+        kept, self.pressed = self.pressed, np.empty((2, self.nodes.size, self.nodes.size), dtype=np.float32)
+        self.pressed[:, :old, :old] = kept
+        deflection, column = linear.equations.operators.deflection.astype(np.float32), 0
+        for each in self.answers:
+            first, columns = (old if column < old else 0), slice(column, column := column + each.shape[1])
+            self.pressed[:, first:, columns] = self._at(self.nodes[first:], each, deflection)
 
-    def _answers(self, linear: CavitatedLinear, new: Indices) -> tuple[Single, Single, Single]:
-        """Return the responses to unit residuals at some nodes: by mode, and of total pressure and gap at all nodes."""
+    def _answers(self, linear: CavitatedLinear, new: Indices) -> Single:
+        """Return the responses to unit residuals at some nodes."""
         mesh, size = self.mesh, self.mesh.size
         own = (np.ones(new.size), new, np.arange(new.size + 1))
         unit = (csc_matrix(own, shape=(size, new.size)) if linear.spread is None else linear.spread[:, new]).tocoo()
@@ -88,52 +92,54 @@ class Capacitance:
         waves, modes = mesh.cosines[angle].T * unit.data, np.arange(mesh.modes)[:, None]
         right: Single = np.zeros((size + 1, new.size), dtype=np.float32)
         np.add.at(right, (modes * mesh.rings + ring, unit.col), waves.astype(np.float32))
-        found = self.banded(right)
-        by_mode, cosines = found[:-1].reshape(mesh.modes, mesh.rings, -1), mesh.cosines.astype(np.float32)
-        deflected = np.matmul(linear.equations.operators.deflection.astype(np.float32), by_mode)
-        total = (cosines @ by_mode.reshape(mesh.modes, -1)).reshape(size, -1)
-        gap = (cosines @ deflected.reshape(mesh.modes, -1)).reshape(size, -1) + found[-1]
-        return found, total, gap
+        return np.asarray(self.banded(right))
 
-    def block(self, linear: CavitatedLinear, rows: Indices, columns: Indices) -> Array:
-        """Return C Z, the film pressures of cavitated nodes under unit residuals; both are places among the kept nodes."""
-        at = self.nodes[rows]
-        found, slope = self.totals[np.ix_(at, columns)], linear.contact_slope.ravel()[at]
+    def _at(self, nodes: Indices, answers: Single, deflection: Single) -> Single:
+        """Return total pressure and gap of some responses at nodes, shape (2, nodes, responses)."""
+        mesh, cosines = self.mesh, self.mesh.cosines.astype(np.float32)
+        by_mode, (angle, ring) = answers[:-1].reshape(mesh.modes, mesh.rings, -1), np.divmod(nodes, mesh.rings)
+        found = np.empty((2, nodes.size, answers.shape[1]), dtype=np.float32)
+        rings = np.unique(ring)
+        deflected = np.matmul(deflection[:, rings], by_mode)
+        for at, each in enumerate(rings):
+            here = np.flatnonzero(ring == each)
+            waves = cosines[angle[here]]
+            found[0, here], found[1, here] = waves @ by_mode[:, each], waves @ deflected[:, at] + answers[-1]
+        return found
+
+    def block(self, linear: CavitatedLinear, among: Indices) -> Array:
+        """Return C Z, the film pressures of cavitated nodes under unit residuals; these are places among the kept nodes."""
+        total, gap = self.pressed
+        found, slope = total[np.ix_(among, among)], linear.contact_slope.ravel()[self.nodes[among]]
         touching = np.flatnonzero(slope)
-        found[touching] -= slope[touching, None].astype(np.float32) * self.gaps[np.ix_(at[touching], columns)]
+        found[touching] -= slope[touching, None].astype(np.float32) * gap[np.ix_(among[touching], among)]
         return np.asarray(found)
 
-    def of(self, linear: CavitatedLinear) -> Preconditioner:
+    def of(self, linear: CavitatedLinear) -> Capacitance:
         """Return the preconditioner of a Jacobian: the last one, where GMRES has few nodes to learn that broke or healed."""
-        last = self.last
-        if last is None or (last.cavitated != linear.cavitated).sum() > REBUILD_AT:
+        if self.linear is None or (self.linear.cavitated != linear.cavitated).sum() > REBUILD_AT:
             self.include(linear)
-            self.last = last = Preconditioner(self, linear)
-        return last
-
-
-class Preconditioner:
-    """An approximate inverse of a Jacobian with cavitated nodes."""
-
-    def __init__(self, kept: Capacitance, linear: CavitatedLinear) -> None:
-        self.kept, self.linear, self.cavitated = kept, linear, linear.cavitated
-        self.columns = np.flatnonzero(linear.cavitated.ravel()[kept.nodes])
-        self.at = kept.nodes[self.columns]
-        if self.at.size:
-            square = kept.block(linear, self.columns, self.columns)
-            self.factors = lu_factor(square, overwrite_a=True, check_finite=False)
+            self.linear = linear
+            self.columns = np.flatnonzero(linear.cavitated.ravel()[self.nodes])
+            if self.columns.size:
+                self.factors = lu_factor(self.block(linear, self.columns), overwrite_a=True, check_finite=False)
+        return self
 
     def __call__(self, right: Array) -> Array:
         """Return about what the inverse of the Jacobian makes of a right-hand side."""
-        linear, mesh = self.linear, self.kept.mesh
-        rows = np.where(linear.cavitated, 0.0, right[:-1].reshape(linear.cavitated.shape) * linear.stiffness)
-        x = self.kept.banded(np.append((mesh.cosines.T @ rows).ravel(), right[-1]))
-        if not self.at.size:
+        linear, at = self.linear, self.nodes[self.columns]
+        assert linear is not None
+        rows = np.where(linear.cavitated, 0.0, right[:-1].reshape(self.shape) * linear.stiffness)
+        x = self.banded(np.append((self.mesh.cosines.T @ rows).ravel(), right[-1]))
+        if not at.size:
             return np.asarray(x)
-        missing = right[self.at] - linear.changes(x).fluid.ravel()[self.at]
-        residuals = np.zeros(self.kept.nodes.size, dtype=np.float32)
+        missing = right[at] - linear.changes(x).fluid.ravel()[at]
+        residuals = np.zeros(self.nodes.size, dtype=np.float32)
         residuals[self.columns] = lapack.sgetrs(*self.factors, missing)[0]
-        return np.asarray(x + self.kept.answers @ residuals)
+        for each in self.answers:
+            x += each @ residuals[: each.shape[1]]
+            residuals = residuals[each.shape[1] :]
+        return np.asarray(x)
 
 
 def advect_front(gas: Array, now: Flags, before: Flags, farthest: int) -> Flags:

@@ -144,10 +144,10 @@ class Coupling:
         return np.asarray(radial + np.stack([self._of_gap(m, 0) for m in modes]))
 
 
-def _without_tiny(blocks: Single) -> Single:
-    """Return blocks without what is too small to be multiplied by its like in single precision."""
+def _without_tiny(blocks: Single, size: Single | float = 1.0) -> Single:
+    """Return blocks without what is too small, beside their size, to be multiplied by its like in single precision."""
     # High modes act on far rings by less than the smallest normal number, and products with such take ten times as long.
-    blocks[np.abs(blocks) < np.sqrt(np.finfo(np.float32).tiny)] = 0.0
+    blocks[np.abs(blocks) < np.sqrt(np.finfo(np.float32).tiny) * size] = 0.0
     return blocks
 
 
@@ -200,9 +200,9 @@ class BlockLU:
         """Return the solution, to single precision, for right-hand sides of the shape (count, size) or (count, size, many)."""
         scale = self.scale.reshape(*self.scale.shape, *(1 for _ in right.shape[2:])).astype(right.dtype)
         x = (right * scale).astype(np.float32, copy=False)
-        one = x.shape[1:]
+        one, size = x.shape[1:], np.abs(x).max(axis=(0, 1))
         for k in range(self.count):
-            x[k] = self.inverses[k] @ x[k]
+            x[k] = _without_tiny(self.inverses[k] @ x[k], size)
             if k < len(self.below):
                 last = min(self.count, k + self.band + 1)
                 x[k + 1 : last] -= (self.below[k] @ x[k]).reshape(-1, *one)
