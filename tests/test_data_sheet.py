@@ -308,11 +308,31 @@ def test_a_case_takes_errors_of_numbers_of_fluid_and_solid(tmp_path):
 def test_a_report_names_fluid_and_solid_with_their_errors_and_a_load_among_its_levers_has_its_force(tmp_path):
     """In a full film more load lowers the coefficient, and raises the force."""
     path = tmp_path / "case.toml"
-    path.write_text(case_text({"speed": '"1 m/s"'}) + '\n[solid]\nlayer_thickness = "2 mm +- 5 %"\n')
+    contact = {
+        "load": '"30 N/m"  # scales',
+        "speed": None,
+        "entrainment_speed": '"0.5 m/s"# the mean',
+        "alpha": "2.0 # theory",
+        "viscosity": None,
+        "kinematic_viscosity": '"50 cSt" # sheet',
+        "density": '"1000 kg/m^3"',
+    }
+    others = {
+        "check": {"stroke": '"20 mm" # crank', "density": "870 # another"},
+        "solid": {"layer_thickness": '"2 mm +- 5 %"'},
+    }
+    path.write_text(case_text(contact, **others))
     sections = {each.heading: each for each in sb.write_report(path, tmp_path / "report.html").sections}
     _, value, error, _ = sections["Inputs"].table[-1]
     assert "fluid newtonian, solid bonded layer, layer thickness 2 mm" in value
     assert error == "thickness of the layer ± 5 %"
+    # Comments behind a text were not seen, and a mean speed was the source of the sum of both.
+    assert {row[0]: row[-1] for row in sections["Inputs"].table[1:] if row[-1]} == {
+        "load": "scales",
+        "contact-law alpha": "theory",
+        "speed": "entrainment_speed = 0.5 m/s: the mean",
+        "viscosity": "kinematic_viscosity = 50 cSt: sheet",
+    }
     [said] = [friction for name, _, friction in sections["The two cheapest levers"].table if name == "load"]
     assert said == "0.244 (-20 %; the force +5 %)"
 

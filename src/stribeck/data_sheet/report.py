@@ -104,11 +104,14 @@ def _sections(case: Case, found: Overview, checks: Checks, data: Measurements | 
 def _inputs(case: Case) -> Iterator[tuple[str, str, str, str]]:
     """Yield label, value, error and source of each input, as stated in the file."""
     yield "Input", "Value", "Error", "Source, from the case file"
-    sources, table = _sources(case.path), case.contact.INPUTS
+    sources, table, given = _sources(case.path), case.contact.INPUTS, case.tables.get("contact", {})
     for name, value in case.contact.inputs():
         row, error = table.kept[name], case.errors.get(name)
-        names = (name, *(each for each, of in (table.stands_for | {"h_rms": "roughness"}).items() if of == name))
-        source = next((sources[each] for each in names if each in sources), "")
+        own = (name, "h_rms") if name == "roughness" else (name,)
+        others = (each for each, of in table.stands_for.items() if of == name and each in given)
+        # What is said of a mean speed is not said of the sum.
+        said = {each: "" for each in own} | {each: f"{each} = {given[each]}: " for each in others}
+        source = " ".join(begin + sources[each] for each, begin in said.items() if each in sources)
         shown = "" if error is None else f"± {format_percent(error)}"
         yield row.label, format_si(value, row.dimension, 4), shown, source
     model = model_words(case.contact.groups, case.contact)
@@ -120,19 +123,22 @@ def _inputs(case: Case) -> Iterator[tuple[str, str, str, str]]:
 
 
 def _sources(path: Path) -> dict[str, str]:
-    """Return the comments of a case file, those above each key and behind it on its line."""
+    """Return the comments of a case file on its contact and surface, those above each key and behind it on its line."""
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except OSError:
         return {}
     found: dict[str, str] = {}
     above: list[str] = []
+    table = ""
     for line in lines:
         if line.lstrip().startswith("#"):
             above.append(line.strip().lstrip("# "))
             continue
-        key = re.match(r"\s*(\w+)\s*=\s*(?:\"[^\"]*\"|[^#\"]*)(?:#\s*(.*))?$", line)
-        if key:
+        if header := re.match(r"\s*\[\s*([\w.]+)", line):
+            table = header[1]
+        key = re.match(r"\s*(\w+)\s*=(?:\"[^\"]*\"|[^#\"])*(?:#\s*(.*))?$", line)
+        if key and table in ("contact", "surface"):  # others have keys of these names, such as a stroke
             found.setdefault(key[1], " ".join([*above, key[2] or ""]).strip())
         above = []
     return {name: text for name, text in found.items() if text}
