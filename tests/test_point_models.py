@@ -1,6 +1,7 @@
 """A ball with fluids and bodies beyond those of the article: flow, slopes, limits, and what is refused."""
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from stribeck import Groups
 from stribeck.fluids import Barus, DowsonHigginson, PatirCheng
 from stribeck.solids import Layer
 
+EXAMPLES = Path(__file__).parents[1] / "examples"
 MIXED = Groups(0.1, 1e-3, 1e-3, geometry="point")
 
 
@@ -56,6 +58,16 @@ def test_a_curve_over_the_load_passes_through_layers_that_need_other_panels():
     curve = sb.stribeck_curve(contact, load=(0.1, 0.5), points=3, rtol=1e-2)
     found = [sb.solve(contact.replace(load=load), rtol=1e-3).friction().total for load in curve.values]
     assert curve.friction.total == pytest.approx(found, rel=1e-3)
+
+
+@pytest.mark.slow  # a sharp rim on a thin layer: seven seconds
+def test_a_lens_on_its_holder_is_solved_with_the_pressure_and_friction_that_the_page_of_balls_states():
+    """The first mesh does not resolve the pressure at the rim: the equations on it had no regular solution."""
+    lens = sb.load_case(EXAMPLES / "contact_lens.toml").contact
+    free, held = (sb.solve(each, rtol=1e-2) for each in (lens, lens.replace(solid=Layer("0.1 mm"))))
+    assert held.central_pressure / free.central_pressure == pytest.approx(2.25, abs=0.02)
+    assert free.friction().total == pytest.approx(0.0027, abs=5e-5)
+    assert held.friction().total == pytest.approx(0.0021, abs=5e-5)
 
 
 @pytest.mark.quick

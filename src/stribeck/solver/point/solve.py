@@ -30,6 +30,7 @@ from stribeck.equations.point.mesh_choice import (
     is_too_thin,
     operators_of,
     resolution,
+    split_where_poor,
 )
 from stribeck.equations.point.observables import OBSERVABLES, identity_error
 from stribeck.equations.point.planes import PLANES
@@ -45,6 +46,7 @@ from stribeck.numerics.settings import (
     LEAST_DEGREE,
     LEAST_MODES,
     MAX_DEGREE,
+    MAX_REFINEMENTS,
     MAX_RTOL,
     MIN_RTOL_OF_BALLS,
     NEGLIGIBLE,
@@ -109,9 +111,16 @@ def first_state(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> Lev
     if is_too_thin(speed, law):
         return Outcome.MESH_LIMIT
     try:
-        found = resolution(speed, law, LEAST_DEGREE, LEAST_MODES, model)
-        guess = first_guess(found, speed, law)
-        level = None if guess is None else solve_level(found, speed, law, guess, operators_of(found).mesh, TOLERANCE)
+        found, level = resolution(speed, law, LEAST_DEGREE, LEAST_MODES, model), None
+        for _ in range(MAX_REFINEMENTS):
+            guess, mesh = first_guess(found, speed, law), operators_of(found).mesh
+            if guess is None:
+                break
+            level = solve_level(found, speed, law, guess, mesh, TOLERANCE)
+            better = split_where_poor(found, mesh, guess.fluid, law.pressure(guess.gap))
+            if level.outcome.ok or better == found:
+                break
+            found = better  # under a thin layer the edge is sharper than that of the half-space
         if level is None or not level.outcome.ok:
             level = _from_newtonian(speed, law, model) or level
     except MeshTooLargeError as problem:
