@@ -112,7 +112,7 @@ TABLES = (
         "persson",
         Cavitation.NONE,
         {"speed": (MIN_SPEED, 1e6), "load": (1e-2, 20.0), "relative_roughness": (1e-3, 1.0)},
-        1e-3,
+        3e-3,
         "line_persson.npz",
         LINE_PERSSON,
     ),
