@@ -316,6 +316,7 @@ def test_a_curve_read_off_it_is_the_solved_one():
     assert np.allclose(read.observable("minimum_gap"), solved.observable("minimum_gap"), rtol=1e-4)
     assert (np.abs(read.friction - solved.friction) <= read.friction.error).all()
     assert read.regimes == solved.regimes
+    assert read.notes == solved.notes and len(read.notes) == 2  # it had none, nor then the files of the page
     assert [mark.name for mark in read.transitions] == [mark.name for mark in solved.transitions]
     for mine, theirs in zip(read.transitions, solved.transitions, strict=True):
         assert mine.value == pytest.approx(theirs.value, rel=1e-3)

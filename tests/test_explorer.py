@@ -569,8 +569,9 @@ def test_words_that_mean_nothing_or_half_of_it_are_refused_with_what_to_type(sub
         ("viscosity", "ISO VG 46 at 600 C"): "temperature = 600 degC must lie between",
     }
     for (name, text), said in refused.items():
-        with subtests.test(text), pytest.raises(sb.InputError, match=re.escape(said)):
+        with subtests.test(text), pytest.raises(sb.InputError, match=re.escape(said)) as problem:
             choices.typed(START, name, text)
+        assert ("Type both" in str(problem.value)) == (text == "1500 rpm")
 
 
 def test_what_to_change_is_told_with_the_smallest_change_marked(answer, rested):

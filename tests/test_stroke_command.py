@@ -1,6 +1,7 @@
 """The command ``stribeck stroke`` and the table ``[stroke]``: the answer first, every motion, and what is refused."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -38,11 +39,27 @@ def test_the_answer_is_friction_beside_steady_sliding_and_files_hold_the_rest(ca
     assert found["mean_friction"] == pytest.approx(mean, rel=0.005)
     assert found["work"] == pytest.approx(30.0 * mean * np.ptp(path), rel=0.02)
     assert found["mean_friction"] > 1.01 * found["steady_mean_friction"]
+    # Rounded to one digit an error stood a third too small.
+    for name, line in (("mean_friction", lines[0]), ("work", next(line for line in lines if line.startswith("work of")))):
+        value, error = (float(each) for each in re.search(r"([0-9.]+) ± ([-0-9.e]+)", line).groups())
+        assert error == pytest.approx(found[f"{name}_error"], rel=0.05), name
+        assert value == pytest.approx(found[name], rel=5e-4)
     import xarray
 
     with xarray.open_dataset(files[0]) as data:
         assert np.array_equal(data.friction, found["friction"])
     assert files[1].stat().st_size > 10_000
+
+
+def test_all_commands_judge_the_stroke_of_the_motion_alike(subtests, capsys, write):
+    """``check`` had the case outside the model for its stroke, where state, curve and regimes had it applied."""
+    case = write({"motion": '"sine"', "stroke": '"20 mm"', "frequency": "0.1"})
+    assert sb.load_case(case).facts == {"stroke": pytest.approx(0.02)}
+    for command in ("check", "solve"):
+        with subtests.test(command=command):
+            found = json.loads(call(capsys, command, case, "--json").out)
+            assert not found["applies"] and "stroke over a" in [each["name"] for each in found["checks"]]
+    assert sb.load_case(write(None, check={"stroke": '"20 mm"'})).facts == {"stroke": 0.02}
 
 
 def test_every_motion_is_read_from_its_table(subtests, write):

@@ -136,7 +136,12 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         notes=checked["notes"],
         fit=replace(fit, **of_contact),
         bench=replace(bench, **of_contact),
-        facts={**model.facts, **{name: found.given[name] for name in FACTS.keys() & found.given.keys()}, **facts},
+        facts={
+            **model.facts,
+            **(stroke.facts if stroke else {}),
+            **{name: found.given[name] for name in FACTS.keys() & found.given.keys()},
+            **facts,
+        },
         errors=known | typical,
         conversions=(
             *found.sentences,

@@ -187,8 +187,7 @@ def check_command(case: Path, /, *, json: bool = False) -> int:
 
     loaded = sb.load_case(case)
     with interruptible() as progress:
-        facts = (loaded.stroke.facts if loaded.stroke else {}) | loaded.facts
-        found = checks_of(Subject(loaded.contact, facts, loaded.definition, on_point=progress))
+        found = checks_of(Subject(loaded.contact, loaded.facts, loaded.definition, on_point=progress))
     headline, *lines = str(found).splitlines()
     said = [headline, *filter(None, [loaded.title]), *lines, *reports.conversion_lines(loaded)]
     answer(json, lambda: {"title": loaded.title, "unchecked": list(found.unchecked)}, lambda: said, found, loaded)

@@ -15,7 +15,7 @@ import stribeck as sb
 from stribeck.cli.arguments import OUTPUTS, Outputs, Quantity, Verbose
 from stribeck.cli.exits import answer
 from stribeck.cli.progress import interruptible
-from stribeck.quantities.formats import format_percent, format_si
+from stribeck.quantities.formats import format_error, format_percent, format_si
 from stribeck.quantities.units import InputError, checked_word, show, to_si
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def _lines(found: Stroke, steady: dict[str, float], title: str, verbose: bool) -
             f"{part:.2g} times" if abs(part - 1) > 0.5 else f"{100 * abs(part - 1):.2g} % {'above' if part > 1 else 'below'}"
         )
         said = f"{much} that of steady sliding at the same speeds"
-    yield f"Mean friction over the path out is {mean:.3g} ± {steady['mean_friction_error']:.1g}, {said}."
+    yield f"Mean friction over the path out is {mean:.4g} ± {format_error(steady['mean_friction_error'])}, {said}."
     yield from filter(None, [title])
     speed = format_si(steady["largest_speed"], "speed")
     rows = [
@@ -114,7 +114,7 @@ def _lines(found: Stroke, steady: dict[str, float], title: str, verbose: bool) -
 def _row(label: str, steady: dict[str, float], *names: str) -> tuple[str, ...]:
     """Return numbers of the stroke and of steady sliding with their errors."""
     numbers = [(steady[name], steady[f"{name}_error"]) for name in names]
-    return (label, *(text for value, error in numbers for text in (f"{value:.4g}", f"± {error:.1g}")))
+    return (label, *(text for value, error in numbers for text in (f"{value:.4g}", f"± {format_error(error)}")))
 
 
 def _instants(found: Stroke) -> list[tuple[str, ...]]:
@@ -123,7 +123,11 @@ def _instants(found: Stroke) -> list[tuple[str, ...]]:
     first, end = found.last_cycle.indices(len(found.time))[:2]
     for k in range(first, end, max((end - first) // ROWS, 1)):
         place = float(found.position[k])
-        numbers = f"{found.friction[k]:.4g}", f"± {found.errors['friction'][k]:.1g}", f"{found.contact_load_share[k]:.3g}"
+        numbers = (
+            f"{found.friction[k]:.4g}",
+            f"± {format_error(found.errors['friction'][k])}",
+            f"{found.contact_load_share[k]:.3g}",
+        )
         where = (
             format_si(found.time[k], "time"),
             format_si(place if abs(place) > ROUNDING * found.half_width else 0.0, "length"),

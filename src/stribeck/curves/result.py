@@ -331,11 +331,16 @@ class StribeckCurve(Exported, Shown, ByValue):
     @cached_property
     def law_in_doubt(self) -> Array:
         """Whether the contact law is outside its range at each point while asperities matter there."""
+        return np.array([bool(each) for each in self._law_notes], bool)
+
+    @cached_property
+    def _law_notes(self) -> list[tuple[str, ...]]:
+        """What is to be said of the contact law at each point."""
         balanced = self.friction if self.definition == "balanced" else self.friction(definition="balanced")
         read = [self.observable(name) for name in ("contact_load_share", "central_gap", "minimum_gap")]
         rows = zip(np.log(self.values).tolist(), *(each.tolist() for each in (*read, balanced.fluid)), strict=True)
         given, groups_at = (self.boundary_friction, self.beta), self._path.source.coordinate.groups_at
-        return np.array([bool(law_notes(groups_at(s), self.contact, _Read(*each), given)) for s, *each in rows], bool)
+        return [law_notes(groups_at(s), self.contact, _Read(*each), given) for s, *each in rows]
 
     @property
     def error_estimate(self) -> float:
@@ -346,8 +351,11 @@ class StribeckCurve(Exported, Shown, ByValue):
     def notes(self) -> tuple[str, ...]:
         """What to know before using the numbers; each sentence names the points, or the minimum, that it concerns."""
         found: dict[str, list[tuple[float, str]]] = {}
-        for value, solution in zip(self.values.tolist(), self.solutions, strict=bool(self.states)):  # off the atlas none
-            for note in solution.notes_for(self.boundary_friction, self.beta):
+        given = self.boundary_friction, self.beta
+        # Off the atlas there are no states, whose pressures would say more.
+        told_of = [each.notes_for(*given) for each in self.solutions] if self.states else self._law_notes
+        for value, notes in zip(self.values.tolist(), told_of, strict=True):
+            for note in notes:
                 # A note holds numbers that differ from point to point; those of the first point are kept.
                 kind = re.sub(r"[-+]?[0-9][-+.0-9e]*", "", note)
                 found.setdefault(kind, []).append((value, note))
@@ -357,11 +365,12 @@ class StribeckCurve(Exported, Shown, ByValue):
     @property
     def minimum_notes(self) -> tuple[str, ...]:
         """The note on a minimum outside the range of the contact law, one of :attr:`notes`; empty if there is none."""
-        if self.minimum is None or self.minimum.solution is None:
+        if self.minimum is None:
             return ()
-        state, where = self.minimum.solution, self._path.source.coordinate.where(self.minimum.value)
-        share = state.friction(self.boundary_friction, self.beta, self.definition).contact_share
-        note = minimum_note(state.groups, state.contact, state.observables, share, where)
+        found, coordinate = self.at(self.minimum.value), self._path.source.coordinate
+        groups, where = coordinate.groups_at(math.log(self.minimum.value)), coordinate.where(self.minimum.value)
+        share = float(friction_share(found.friction.asperities, found.friction.fluid))
+        note = minimum_note(groups, self.contact, found, share, where)
         return (note,) if note else ()
 
     def _note(self, points: list[tuple[float, str]]) -> str:

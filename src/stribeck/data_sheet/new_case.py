@@ -227,7 +227,7 @@ def new_case(geometry: Geometry = "line", seal: str | None = None) -> str:
             usual=f"{rtol:g}".replace("e-0", "e-"),
         ),
         "[check]",
-        "# Used by stribeck check alone; remove the # of what you know.",
+        "# Used by the checks alone; remove the # of what you know.",
     ]
     lines += [f"# {fact.name} = {fact.example}   # {fact.label}; {fact.source}" for fact in FACTS.values()]
     return "\n".join(lines) + "\n"
@@ -264,7 +264,9 @@ def _stroke() -> str:
     """Return the table of a stroke, with all motions."""
     motions = [f'motion = "{name}"; {_needed(motion)}' for name, motion in MOTIONS.items() if _needed(motion)]
     lines = [f"# {'# or ' if k else ''}{line}" for k, line in enumerate(motions)]
-    return "\n".join(["", "# Used by stribeck stroke alone: how the contact moves.", "# [stroke]", *lines, ""])
+    return "\n".join(
+        ["", "# How the contact moves, for stribeck stroke; the checks take its length.", "# [stroke]", *lines, ""]
+    )
 
 
 def _needed(law: type) -> str:

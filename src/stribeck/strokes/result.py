@@ -14,7 +14,7 @@ from stribeck.files.datasets import Column
 from stribeck.files.results import Exported, Labelled
 from stribeck.motions.motion import Motion
 from stribeck.numerics.settings import COARSE_RTOL, NEGLIGIBLE
-from stribeck.quantities.formats import format_si
+from stribeck.quantities.formats import format_error, format_si
 from stribeck.quantities.results import ByValue, Card, Told
 
 __all__ = ["Stroke", "beside_steady"]
@@ -88,15 +88,15 @@ class Stroke(Exported, Told, ByValue):
             ("stroke", f"{format_si(float(np.ptp(self.position)), 'length')}, {self.half_widths:.3g} half-widths"),
             (
                 "largest share of asperities",
-                f"{self.contact_load_share[largest]:.3g} ± {self.errors['contact_load_share'][largest]:.1g}",
+                f"{self.contact_load_share[largest]:.3g} ± {format_error(self.errors['contact_load_share'][largest])}",
             ),
-            ("largest friction", f"{abs(self.friction[peak]):.3g} ± {self.errors['friction'][peak]:.1g}"),
+            ("largest friction", f"{abs(self.friction[peak]):.3g} ± {format_error(self.errors['friction'][peak])}"),
             (
                 "thinnest film",
                 f"{format_si(self.minimum_gap[thinnest], 'length')} ± "
-                f"{format_si(self.errors['minimum_gap'][thinnest], 'length', 1)}",
+                f"{format_error(self.errors['minimum_gap'][thinnest], 'length')}",
             ),
-            ("work of friction per length", f"{self.work:.4g} ± {self.work_error:.1g} J/m"),
+            ("work of friction per length", f"{self.work:.4g} ± {format_error(self.work_error)} J/m"),
         ]
         of = "the last cycle" if self.motion.repeats else "the motion"
         return Card(f"friction and films of {of}, {len(self.time[last]) - 1} steps", rows, self.notes)

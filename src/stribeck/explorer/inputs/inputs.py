@@ -271,7 +271,8 @@ def with_text(inputs: Inputs, name: str, text: str) -> Inputs:
             try:
                 return inputs.edited(found)
             except InputError as problem:
-                together = any(str(problem).partition(" ")[0] in form.names and form.names[0] in found for form in FORMS)
+                missing = str(problem).partition(" is missing")[0]
+                together = any(missing in form.names and form.names[0] in found for form in FORMS)
                 raise InputError(f"{problem}{' Type both, with a comma between them.' if together else ''}") from None
     try:
         row.checked(text)
