@@ -175,6 +175,19 @@ def test_a_frequency_per_second_says_that_it_was_taken_for_the_angular_one(tmp_p
         assert any("taken for the angular one" in note for note in found.notes) == (unit == "1/s")
 
 
+def test_moduli_at_several_temperatures_are_no_curve_before_they_are_shifted(tmp_path):
+    head, *rows = write(tmp_path / "a.csv").read_text().splitlines()
+    for name, step in (("Temperature [°C]", 20), ("T [K]", 20), ("Temp.", 20), ("temperature [°C]", 0.01)):
+        for frequency in (head, f"reduced {head}"):
+            lines = [f"{frequency};{name}", *(f"{row};{25 + step * (k % 3)}" for k, row in enumerate(rows))]
+            (tmp_path / "b.csv").write_text("\n".join(lines))
+            if step > 1 and frequency == head:
+                with pytest.raises(sb.InputError, match=r"b\.csv: .* goes from 25 to 65, .*'reduced frequency"):
+                    sb.solids.from_master_curve(tmp_path / "b.csv")
+            else:
+                assert sb.solids.from_master_curve(tmp_path / "b.csv").relaxed_modulus == pytest.approx(RELAXED, rel=1e-4)
+
+
 def test_a_case_names_the_file_and_says_how_well_it_was_followed(capsys, tmp_path):
     write(tmp_path / "rubber.csv")
     text = (

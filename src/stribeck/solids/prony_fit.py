@@ -50,6 +50,8 @@ REDUCED = rf".*(?:{_SHIFTED}).*|{_SHIFT}"
 FREQUENCY = (
     rf"(?:(?:angular|{_SHIFTED}) )*(?:freq(?:uency)?|(?:kreis)?frequenz)(?: (?:{_SHIFTED}))?(?: {_SHIFT})?|omega|ω|f|{_SHIFT}"
 )
+TEMPERATURE = r"(?:sample |probe[n ]*)?temp(?:erature?|\.)?|t"
+ONE_TEMPERATURE = 2.0  # Span of temperatures in a file up to which its moduli count as of one: of control, not of steps
 LOSS_TANGENT = r"(?:loss )?tan(?:gent)?(?:[ _]?(?:delta|δ|d))?|loss (?:factor|tangent)|damping factor|verlustfaktor"
 TENSION, SHEAR = "tension", "shear"
 KINDS = {TENSION: ("e", "tensile|young.?s|zug"), SHEAR: ("g", "shear|schub|scher")}
@@ -217,7 +219,10 @@ def fit_prony(frequency: Any, storage: Any, loss: Any, *, poisson_ratio: float =
         )
     if misfit > POOR_FIT:
         limit = format_percent(POOR_FIT)
-        notes.append(f"No series follows these values within {limit}: check that storage and loss belong together.")
+        notes.append(
+            f"No series follows these values within {limit}: check that storage and loss belong together, "
+            "and that all were measured at one temperature or shifted to it."
+        )
     return PronyFit(omega, moduli[0], moduli[1], solid, relaxed, nu, misfit, float(np.abs(deviation).max()), tuple(notes))
 
 
@@ -242,7 +247,8 @@ def from_master_curve(path: str | os.PathLike[str], *, poisson_ratio: float = 0.
     Raises
     ------
     InputError
-        Where the file cannot be read or has no such columns, or its values allow no fit.
+        Where the file cannot be read or has no such columns, holds several temperatures over a frequency that is not called
+        reduced or shifted, or its values allow no fit.
     """
     # Slow to import, and most solids have no file
     from stribeck.files.columns import Column, is_called_or_signed, read_columns
@@ -264,6 +270,15 @@ def from_master_curve(path: str | os.PathLike[str], *, poisson_ratio: float = 0.
     notes, (omega, *moduli) = columns.notes, columns.in_si.values()
     if PER_SECOND & columns.units["frequency"]:
         notes += ("Frequency in 1/s was taken for the angular one, in rad/s; write Hz where it counts cycles.",)
+    if not is_called_or_signed(columns.headers["frequency"], REDUCED):
+        for header in Column(TEMPERATURE, "number").names_in(columns.table):
+            low, high = (float(end(columns.table.values(header), initial=np.nan)) for end in (np.fmin.reduce, np.fmax.reduce))
+            if high - low > ONE_TEMPERATURE:
+                raise InputError(
+                    f"{path}: {show(header)} goes from {low:g} to {high:g}, and moduli of several temperatures lie on no one "
+                    "curve; shift their frequencies to one temperature and call them 'reduced frequency [Hz]', or keep the "
+                    "rows of one temperature."
+                )
     if "loss tangent" in columns.in_si:
         moduli[1] *= moduli[0]
         notes += ("The loss modulus is the storage modulus times the loss tangent.",)
