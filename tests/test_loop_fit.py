@@ -1,6 +1,7 @@
 """Fits of friction loops: inputs of a contact from friction over the position or time of a stroke."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -44,6 +45,14 @@ def test_boundary_friction_comes_out_of_a_loop_over_position(case, tmp_path):
     assert float(found.to_dataset().boundary_friction) == found["boundary_friction"].value
     (axes,) = found.plot(tmp_path / "loop.png").axes
     assert axes.get_xlabel() == "position (mm)"
+
+
+def test_neighbours_without_correlation_are_called_so(case, tmp_path):
+    contact = sb.load_case(case).contact
+    for seed, said in ((3, "neighbours uncorrelated"), (5, r"neighbours correlated by 0\.\d\d$")):
+        path = loop_of(tmp_path / "loop.csv", contact.replace(boundary_friction=0.5), count=24, seed=seed)
+        found = sb.bench.fit_loop(path, case, free=["boundary_friction"])
+        assert re.search(said, str(found), re.MULTILINE)
 
 
 def test_an_input_that_ends_at_its_bound_is_named(case, tmp_path):

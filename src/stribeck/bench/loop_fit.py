@@ -116,9 +116,10 @@ class LoopFit(WithFittedInputs, Exported, Told, ByValue):
         table = [("input", "value", "error", "68 % interval", "95 % interval")]
         table += [(each.label, *each.texts) for each in self.inputs]
         largest = float(np.abs(self.measured).max())
+        alike = f"correlated by {self.correlation:.2f}" if self.correlation >= 0.005 else "uncorrelated"
         rows = [
             ("noise", f"{self.noise:.2g}, {format_percent(self.noise / largest)} of the largest friction"),
-            ("rows", f"{len(self.measured)}, neighbours correlated by {self.correlation:.2g}"),
+            ("rows", f"{len(self.measured)}, neighbours {alike}"),
             ("error of the stroke", f"{float(self.friction_error.max()):.1g} at most"),
         ]
         warnings = [f"Warning: {each.message}" for each in self.undetermined]
