@@ -122,7 +122,7 @@ TABLES = (
         "exponential",
         Cavitation.EXIT,
         {"speed": (MIN_SPEED, 1e4), "load": (MIN_LOAD, 0.9), "relative_roughness": (1e-3, 10.0)},
-        2e-3,
+        3e-3,
         "line_exit.npz",
         LINE_EXIT,
     ),
