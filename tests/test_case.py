@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import numpy as np
 import pytest
 from command_line import EXAMPLES, case_text, toml_of
 from fit_data import TRUE
@@ -186,10 +187,10 @@ def test_a_damaged_case_is_read_or_refused_but_never_breaks(tmp_path_factory, da
 # --- the examples ---
 
 
-def number_in_comments(path, name):
-    """Return the number that the comments of a case state for a group, with half of its last digit."""
+def number_in_comments(path, name, between=" = "):
+    """Return the number that the comments of a case state after a name, with half of its last digit."""
     words = " ".join(line.lstrip("# ") for line in path.read_text().splitlines() if line.startswith("#"))
-    stated = re.search(rf"{name} = ([0-9]+\.[0-9]*[1-9])", words)[1]
+    stated = re.search(rf"{name}{between}([0-9]+\.[0-9]*[1-9])", words)[1]
     return float(stated), 0.5 * 10.0 ** -len(stated.partition(".")[2])
 
 
@@ -203,6 +204,17 @@ def test_an_example_states_its_groups_and_has_a_law_that_holds_there(subtests):
             assert groups.relative_roughness == pytest.approx(kappa, abs=kappa_digit)
             assert groups.load < 1 or groups.law.name == "persson"
             assert groups.load < 10
+
+
+def test_an_example_states_the_suction_that_its_film_would_bear_without_an_end(subtests):
+    for path in CYLINDERS:
+        contact = load_case(path).contact
+        if contact.cavitation != "none":
+            with subtests.test(path=path):
+                suction, digit = number_in_comments(path, "suction behind the contact", " is ")
+                full = sb.solve(contact.replace(cavitation="none"), rtol=1e-3).profile(np.linspace(-2, 4, 1201))
+                found = -full.fluid_pressure.min() * contact.hertz.pressure / 1e6
+                assert found == pytest.approx(suction, abs=digit)
 
 
 # --- the tables of fluid, cavitation, flow factors and solid ---
