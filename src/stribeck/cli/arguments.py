@@ -81,7 +81,7 @@ class ModelOptions:
         How the film ends: none, exit (at ambient pressure) or reform (at the pressure of a cavity); defaults to the case, or
         none.
     cavity_pressure
-        Pressure of the cavity with --cavitation reform, above the ambient one, such as '-0.1 MPa'; with --groups over p_Hz.
+        Pressure of the cavity with --cavitation reform, relative to ambient, such as '-0.1 MPa'; with --groups over p_Hz.
     flow_factors
         What roughness does to the flow: none, effective-medium or patir-cheng; defaults to the case, or none.
     """

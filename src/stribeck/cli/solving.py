@@ -174,8 +174,7 @@ def check_command(case: Path, /, *, json: bool = False) -> int:
 
     Example: stribeck check examples/rod_seal.toml
 
-    Facts that only checks use go into the table [check] of the case: pressure_coefficient, layer_thickness, loss_tangent,
-    supply_film, stroke, thinning_rate, molecular_size, thermal_conductivity, thermal_thinning, density, rms_slope.
+    Facts that only checks use go into the table [check] of the case: stribeck new writes a case with all of them.
 
     A table [stroke] gives the stroke, unless [check] does.
 
