@@ -214,14 +214,12 @@ def test_the_picture_for_developers_is_the_order_of_imports():
     assert shown == [found for line in LAYERS if (found := {name for name in line if name[0] != "_"})]
 
 
-def test_a_page_for_developers_names_files_that_exist(subtests):
-    for page in ["docs/for_developers.md", "CONTRIBUTING.md"]:
+def test_a_page_names_files_and_folders_that_exist(subtests):
+    folders = (ROOT, ROOT / "docs", ROOT / "src" / "stribeck")
+    for page in PAGES:
         with subtests.test(page=page):
-            named = set(re.findall(r"\b(?:\w+/)+\w+\.py\b", TEXT[ROOT / page]))
-            assert len(named) > 5
-            assert {
-                name for name in named if not any((folder / name).exists() for folder in (ROOT, ROOT / "src" / "stribeck"))
-            } == set()
+            named = set(re.findall(r"\b(?:\w+/)+\w+\.py\b|(?<=`)(?:\w+/)+(?=`)", TEXT[page]))
+            assert {name for name in named if not any((folder / name).exists() for folder in folders)} == set()
 
 
 def test_every_name_of_the_reference_exists():
