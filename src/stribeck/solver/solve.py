@@ -103,7 +103,8 @@ def solve(
         ordinary inputs.
     rtol : float
         Relative error allowed in every observable, absolute for the load shares; from 1e-11 to 1e-2, for a ball from 1e-8
-        and without its minimum film, which has an error of its own.
+        (less than 1e-4 in a film that ends, or 2e-3 in one that re-forms, counts as that) and without its minimum film, which
+        has an error of its own.
     law : str or AsperityLaw, optional
         Contact law: an object such as :class:`stribeck.contact_laws.GreenwoodWilliamson`, or the name of one that needs no
         parameters; that of the problem if omitted, by default the exponential law.
