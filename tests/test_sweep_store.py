@@ -81,6 +81,19 @@ def test_states_that_are_no_grid_are_along_their_number(tmp_path):
     assert dict(found.sizes) == {"state": 3} and found.state.values.tolist() == [0, 1, 2]
 
 
+def test_regimes_are_by_the_definition_of_the_file(tmp_path):
+    text = (
+        "[solver]\ndefinition = 'published'\n[groups]\nload = 0.1\nroughness = 1e-3\nboundary_friction = 2e-4\nbeta = 0.05\n"
+    )
+    found = sb.sweep(write(tmp_path, text + "[vary]\nspeed = [1e-3, 2e-3]\n"), tmp_path / "store")
+    data = found.to_dataset()
+    shares = [(data.friction_asperities / data[f"friction_{each}"]).values for each in ("balanced", "published")]
+    assert (shares[0] > 0.1).all() and (shares[1] < 0.1).all()
+    assert data.regime.values.tolist() == ["hydrodynamic"] * 2
+    assert data.attrs["definition"] == found.to_dict()["definition"] == "published"
+    assert found.plot().axes[0].lines[0].get_ydata().tolist() == data.friction_published.values.tolist()
+
+
 def test_states_not_computed_say_so(copy):
     store, _ = copy
     lose(store, 4)
@@ -221,9 +234,13 @@ def test_a_damaged_store_is_refused_with_a_sentence_or_opens(copy, filled):
 def test_another_design_is_refused(copy, tmp_path):
     store, _ = copy
     before = kept(store)
-    for name, changed in (("a", SMALL.replace("0.8", "0.9")), ("b", SMALL + "[solver]\nrtol = 1e-5\n")):
+    for name, changed in (
+        ("a", SMALL.replace("0.8", "0.9")),
+        ("b", SMALL + "[solver]\nrtol = 1e-5\n"),
+        ("c", SMALL + "[solver]\ndefinition = 'published'\n"),
+    ):
         with pytest.raises(
-            sb.InputError, match=r"store contains a different sweep from .*: the states or the tolerance differ\."
+            sb.InputError, match=r"store contains a different sweep from .*: the states or \[solver\] differ\."
         ):
             sb.sweep(write(tmp_path, changed, f"{name}.toml"), store)
     assert kept(store) == before

@@ -175,7 +175,7 @@ class BatchSolution(Exported, Shown, ByValue):
         for name in self.varied:
             dims, values = _along(self.dims, self.input(name))
             coords[name] = (dims, values, self.unit(name), name.replace("_", " "))
-        return columns, coords, {"title": "States of a lubricated rough contact", "rtol": self.rtol}
+        return columns, coords, {"title": "States of a lubricated rough contact", "rtol": self.rtol, "definition": "balanced"}
 
     def input(self, name: str) -> Array:
         """Return an input of each state.

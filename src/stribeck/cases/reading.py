@@ -169,11 +169,16 @@ def _keys_of_case(geometry: Geometry) -> dict[str, Keys]:
             "points": Key(whole(2, 100_000), points),
         },
         "stroke": KEYS_OF_STROKE,
-        "solver": {"rtol": tolerance(rtol), "definition": Key(one_of(*DEFINITIONS), Case.definition)},
+        "solver": keys_of_solver(rtol),
         **KEYS_OF_SURFACES,
         "check": dict.fromkeys(FACTS, Key(lambda name, value: FACTS[name].checked(value))),
         "": HEAD,
     }
+
+
+def keys_of_solver(rtol: float) -> Keys:
+    """Return what ``[solver]`` may have."""
+    return {"rtol": tolerance(rtol), "definition": Key(one_of(*DEFINITIONS), Case.definition)}
 
 
 def geometry_of(tables: dict[str, Any]) -> tuple[Geometry, dict[str, Any]]:

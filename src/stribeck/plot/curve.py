@@ -315,7 +315,7 @@ def plot_states(found: Exported, *, ax: Axes | None = None, title: str = "") -> 
     scattered = over == "state" and "varied" in data.attrs
     name = data.attrs["varied"].partition(", ")[0] if scattered else over
     place = data[name if name in data.variables or not scattered else f"{name}_group"]  # the number of the state if unnamed
-    friction = data.friction_balanced.transpose(..., over)
+    friction = data[f"friction_{data.attrs['definition']}"].transpose(..., over)
     x = place.broadcast_like(friction).transpose(*friction.dims).values.reshape(-1, data.sizes[over]).astype(float)
     y = friction.values.reshape(x.shape)
     figure, (ax,) = style.new_figure((7.0, 4.6), [], title=title or "Friction", ax=ax)

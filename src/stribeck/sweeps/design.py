@@ -18,11 +18,12 @@ from stribeck.batches.states import States, contacts_at
 from stribeck.cases.case import Case
 from stribeck.cases.law import KEYS_OF_SURFACES, LAW_KEY, Law, law_of_file
 from stribeck.cases.model_parts import PART_TABLES
-from stribeck.cases.reading import check_case, geometry_of
-from stribeck.cases.tables import HEAD, Key, Keys, noted, read_tables, tolerance
+from stribeck.cases.reading import check_case, geometry_of, keys_of_solver
+from stribeck.cases.tables import HEAD, Key, Keys, noted, read_tables
 from stribeck.checks.body import unusual
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction import Definition
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.groups import Geometry, Groups, Physics
 from stribeck.files.datasets import Column
@@ -63,6 +64,7 @@ class SweepDesign(Tabled, Shown, States):
         "every input at every state: in SI units, or ``boundary_friction`` and ``beta`` beside the groups",
     ]
     law: Annotated[Law, "name of the contact law"]
+    definition: Annotated[Definition, "which friction the regimes and the picture show"]
 
     def _labelled(self) -> Labelled:
         columns: dict[str, Column] = {name: ("state", *each) for name, each in self.input_columns.items()}
@@ -72,7 +74,7 @@ class SweepDesign(Tabled, Shown, States):
     def _card(self) -> Card:
         points = " x ".join(map(str, self.shape))
         rows = [(name, self._range(name)) for name in self.varied]
-        settings = (("law", self.law), ("rtol", f"{self.rtol:g}"), ("file", str(self.path)))
+        settings = (("law", self.law), ("friction", self.definition), ("rtol", f"{self.rtol:g}"), ("file", str(self.path)))
         return Card(f"{self.title or 'a sweep'}: {self.kind}, {points} states", [*rows, *settings])
 
     def _range(self, name: str) -> str:
@@ -115,7 +117,16 @@ class SweepDesign(Tabled, Shown, States):
         # The parts of all contacts are those of the first.
         physics = self.physics if self.contacts is None else self.contacts[0]
         parameters = {} if self.contact_law is None else self.contact_law.parameters
-        settings = [sorted(self.inputs), self.rtol, self.law, self.kind, self.shape, repr(physics), parameters]
+        settings = [
+            sorted(self.inputs),
+            self.rtol,
+            self.definition,
+            self.law,
+            self.kind,
+            self.shape,
+            repr(physics),
+            parameters,
+        ]
         content = [json.dumps(settings).encode(), self.groups.tobytes()]
         content += [self.inputs[name].tobytes() for name in sorted(self.inputs)]
         return hashlib.sha256(b"".join(content)).hexdigest()
@@ -160,7 +171,7 @@ def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
     for name in axes.keys() & (base if isinstance(base, dict) else {}):
         problems.append(f"[{where}] {name} = {show(base[name])} also stands in [vary]; keep one of them.")
     read = _read_contact if si else _read_groups
-    title, rtol, law, make = read(tables, axes, path, problems)
+    title, law, solver, make = read(tables, axes, path, problems)
     if problems:
         raise InputError("\n".join(f"{path}: {problem}" for problem in problems))
     varying = points_of(design["kind"], axes, design.get("points", 0), design.get("seed", 0))
@@ -175,14 +186,14 @@ def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
         kind=design["kind"],
         shape=tuple(map(len, axes.values())) if design["kind"] == "grid" else (len(states["groups"]),),
         varied=tuple(varying),
-        rtol=rtol,
         law=law,
+        **solver,
         **states,
     )
 
 
-Made = tuple[str, float, Law, Callable[[dict[str, Array]], dict[str, Any]]]
-"""Title, tolerance and law of a file, and what makes its states of what varies."""
+Made = tuple[str, Law, dict[str, Any], Callable[[dict[str, Array]], dict[str, Any]]]
+"""Title, law and ``[solver]`` of a file, and what makes its states of what varies."""
 
 
 def _read_contact(tables: dict[str, Any], axes: dict[str, Axis], path: Path, problems: list[str]) -> Made:
@@ -200,9 +211,10 @@ def _read_contact(tables: dict[str, Any], axes: dict[str, Axis], path: Path, pro
             said = line.removeprefix(f"{path}: ")
             varies = any(said.startswith(f"[contact] {name} ") for name in axes)
             problems.append(said.replace("[contact]", "[vary]", 1) if varies else said)
-        return "", 0.0, "", lambda varying: {}
+        return "", "", {}, lambda varying: {}
     forms = {name: value for name, value in given.items() if name in case.contact.INPUTS.stands_for}
-    return case.title, case.rtol, case.law, partial(_contacts, case.contact, forms, fluid)
+    solver = {"rtol": case.rtol, "definition": case.definition}
+    return case.title, case.law, solver, partial(_contacts, case.contact, forms, fluid)
 
 
 def _read_groups(tables: dict[str, Any], axes: dict[str, Axis], path: Path, problems: list[str]) -> Made:
@@ -217,7 +229,7 @@ def _read_groups(tables: dict[str, Any], axes: dict[str, Axis], path: Path, prob
         )
     keys: dict[str, Keys] = {
         "groups": {**{name: Key(lambda name, value: GROUP_ROWS[name].checked(value)) for name in GROUP_ROWS}, "law": LAW_KEY},
-        "solver": {"rtol": tolerance(Case.rtol)},
+        "solver": keys_of_solver(Case.rtol),
         **KEYS_OF_SURFACES,
         "": HEAD,
     }
@@ -230,7 +242,7 @@ def _read_groups(tables: dict[str, Any], axes: dict[str, Axis], path: Path, prob
     with noted(problems):
         shape = law_of_file(law, {}, {name: checked[name] for name in KEYS_OF_SURFACES if name in checked}, path.parent)[0]
     physics = Groups(1.0, 1.0, 1.0, law=shape, geometry=geometry).physics
-    return checked["title"], checked["solver"]["rtol"], law, partial(_groups, physics, fixed)
+    return checked["title"], law, checked["solver"], partial(_groups, physics, fixed)
 
 
 def _contacts(base: Contact, forms: dict[str, Any], fluid: dict[str, Any], varying: dict[str, Array]) -> dict[str, Any]:

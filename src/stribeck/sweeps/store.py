@@ -270,6 +270,7 @@ def _make(db: sqlite3.Connection, design: SweepDesign) -> None:
         "states": len(design),
         "geometry": design.physics["geometry"],
         "rtol": design.rtol,
+        "definition": design.definition,
         "contact_law": design.law,
         "contact_law_parameters": {} if design.contact_law is None else design.contact_law.parameters,
         "inputs": {name: words for name, (_, *words) in columns.items()},
@@ -315,7 +316,7 @@ def _check_same(place: Path, about: dict[str, Any], design: SweepDesign) -> None
     """Refuse a store of another design or version: its states would not belong together."""
     if about["fingerprint"] != design.fingerprint:
         raise InputError(
-            f"{place} contains a different sweep from {design.path}: the states or the tolerance differ. "
+            f"{place} contains a different sweep from {design.path}: the states or [solver] differ. "
             "Choose another store; open_sweep(...).about['design'] is the file that this one was made from."
         )
     if about["version"] != version("stribeck"):

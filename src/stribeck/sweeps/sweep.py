@@ -78,7 +78,8 @@ class Sweep(Exported, Told, ByValue):
     def to_dict(self) -> dict[str, Any]:
         """Return how many states there are and how they ended, ready for JSON."""
         own = ("finished", "failed", "outcomes", "computed", "seconds", "interrupted")
-        found = {"title": self.about["title"], "store": str(self.path), "states": len(self), "rtol": self.about["rtol"]}
+        about = {name: self.about[name] for name in ("rtol", "definition")}
+        found = {"title": self.about["title"], "store": str(self.path), "states": len(self)} | about
         return found | {name: getattr(self, name) for name in own}
 
     def to_dataset(self, *, grid: bool = True) -> xarray.Dataset:
@@ -129,6 +130,7 @@ class Sweep(Exported, Told, ByValue):
                 "contact_law": about["contact_law"],
                 **{f"contact_law_{name}": value for name, value in about["contact_law_parameters"].items()},
                 "rtol": about["rtol"],
+                "definition": about["definition"],
                 "kind": about["kind"],
                 "shape": about["shape"],
                 "varied": ", ".join(about["varied"]),
@@ -147,11 +149,10 @@ class Sweep(Exported, Told, ByValue):
         return Card(finished, sentences=said, notes=(self.note,) if self.note else ())
 
     def _regimes(self) -> np.ndarray[Any, np.dtype[np.object_]]:
-        """Return the regime of each state, empty where there is none."""
+        """Return the regime of each state by the definition of the design, empty where there is none."""
         none = np.full(len(self), np.nan)  # where no state has ended yet
-        fluid, contact, total = (
-            self.columns.get(name, none) for name in ("fluid_load_share", "friction_asperities", "friction_balanced")
-        )
+        names = ("fluid_load_share", "friction_asperities", f"friction_{self.about['definition']}")
+        fluid, contact, total = (self.columns.get(name, none) for name in names)
         numbers = regime_numbers(fluid, friction_share(contact, total - contact))
         return np.where(np.isfinite(total), np.array(REGIMES, dtype=object)[numbers], "")
 
