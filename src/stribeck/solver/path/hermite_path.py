@@ -70,7 +70,7 @@ class HermitePath(ReadablePath):
             for one, other in self.problem.summands:
                 found = found + (straight[:, [one]] - found[:, [one]]) * (column == other)
             one, other = self.problem.shares
-            if self._are_positive(values):
+            if self._share_odds(values, keeps):
                 ratio = at @ (logs[:, [one]] - logs[:, [other]]) + slope @ (growth[:, [one]] - growth[:, [other]])
                 found = np.where(column == one, 1 / (1 + np.exp(-ratio)), found)
                 found = np.where(column == other, 1 / (1 + np.exp(ratio)), found)
@@ -85,9 +85,10 @@ class HermitePath(ReadablePath):
         sizes = np.where(keeps, values, 1.0)
         return (values, slopes), (np.log(np.abs(sizes)), np.where(keeps, slopes / sizes, 0.0)), keeps
 
-    def _are_positive(self, values: Array) -> bool:
-        """Return whether both load shares are so in all states: a fluid that sucks carries less than nothing."""
-        return bool((values[:, list(self.problem.shares)] > 0).all())
+    def _share_odds(self, values: Array, keeps: Flags) -> bool:
+        """Return whether the load shares have odds in all states: a fluid that sucks carries less than nothing."""
+        shares = list(self.problem.shares)
+        return bool(keeps[shares].all() and (values[0, shares] > 0).all())
 
     def _slope_noise(self, first: int, last: int, s: Array, found: Array) -> Array:
         """Return how far errors of slopes set the observables at places off, shape (len(s), n)."""
@@ -105,7 +106,7 @@ class HermitePath(ReadablePath):
         for one, other in self.problem.summands:
             noise[:, other] += noise[:, one]
         one, other = self.problem.shares
-        if self._are_positive(straight[0]):
+        if self._share_odds(straight[0], keeps):
             ratio, growth = (each[:, [one]] - each[:, [other]] for each in logs)
             of_ratio = slope_noise(nodes, ratio, growth, of_logs[:, [one]] + of_logs[:, [other]], s)
             noise[:, [one, other]] = found[:, [one]] * found[:, [other]] * of_ratio
