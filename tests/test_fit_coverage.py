@@ -1,5 +1,7 @@
 """Intervals hold the truth as often as they say, on synthetic experiments."""
 
+import math
+
 import numpy as np
 import pytest
 from fit_data import TRUE, noisy
@@ -46,3 +48,10 @@ def test_errors_with_their_correlations_are_those_of_the_scatter_in_4_experiment
 @pytest.mark.slow
 def test_intervals_cover_in_200_experiments():
     check(*covered(200, 1000), 200)
+
+
+def test_friction_of_a_full_film_alone_leaves_boundary_friction_open():
+    # The fit may lie where rough, slippery asperities follow the noise: smooth ones of any friction explain it as well.
+    start = TRUE.replace(boundary_friction=0.42, roughness=1.3e-6)
+    found = sb.fit(noisy(2, noise=0.02, low=0.1, high=5.0, rows=10), start, free=["boundary_friction", "roughness", "modulus"])
+    assert found["boundary_friction"].interval_95[1] == math.inf

@@ -139,6 +139,7 @@ def _side(
     width = math.sqrt(max(float(covariance[i, i]), 0.0))
     follow = covariance[:, i] / covariance[i, i] if covariance[i, i] > 0 else np.eye(len(at.theta))[i]
     known: list[tuple[float, float, Array]] = [(0.0, 0.0, at.theta)]
+    from_case = False  # Whether the others start from their values in the case
 
     def root_excess(distance: float) -> float:
         """Return the square root of what q is above its minimum, at a distance from the fit."""
@@ -148,7 +149,7 @@ def _side(
         # Where the others do not follow as they should, they may end beyond the model or in another minimum.
         guesses = [near[2] + sign * (distance - near[0]) * follow, near[2]]
         again = [point for point in known if point[0] == distance]
-        for guess in reversed(guesses) if again else guesses:
+        for guess in [np.zeros_like(at.theta)] if from_case else reversed(guesses) if again else guesses:
             try:
                 inside = np.clip(guess, bounds[0] + 1e-9, bounds[1] - 1e-9)
                 found = minimise(at.objective, inside, fixed, tolerance=ENOUGH, near=CLOSE)
@@ -168,7 +169,16 @@ def _side(
     ends, distance = [], 0.0
     for threshold in thresholds:
         # A profile that is not monotone crosses a level more than once: the wider interval holds the narrower one.
-        distance = max(distance, _crossing(root_excess, known, math.sqrt(threshold), width, reach))
+        target = math.sqrt(threshold)
+        distance = max(distance, _crossing(root_excess, known, target, width, reach))
+        if math.isfinite(distance) and not from_case:
+            # Noise may lead the fit out of the valley of q that the case lies in, which is lower farther out.
+            from_case = True
+            if root_excess(distance) < target - ACCURACY:
+                known[:] = [point for point in known if point[0] <= distance]
+                distance = max(distance, _crossing(root_excess, known, target, width, reach))
+            else:
+                from_case = False
         ends.append(float(at.theta[i]) + sign * distance)
     return ends
 
