@@ -80,7 +80,7 @@ assert abs(curve.minimum.friction - 0.02682) < 1e-5
 
 # %% [markdown]
 # For the minimum friction the article prints a formula that gives 0.0033 here; with the sign of one exponent corrected it
-# gives 0.0219. The errata list 37 such places, each with a test.
+# gives 0.0212. The errata list 37 such places, each with a test.
 #
 # ## Slow: the boundary
 #
