@@ -403,7 +403,7 @@ def test_a_film_that_ends_beside_a_lip_is_found_where_the_way_from_a_thick_film_
 
 
 def test_a_fluid_that_sucks_within_a_land_adds_to_the_load_of_asperities_on_curves_too():
-    """Its share of the load is below zero: curves through such states had lost the sign, and friction was 7 % too low."""
+    """Its share of the load is below zero: curves and intervals had lost the sign, and friction was 7 % too low."""
     land = {"profile": sb.profiles.Land("0.5 mm", "1.765 mm"), "modulus": "7.3 MPa", "load": "100 N/m", "cavitation": "exit"}
     seal = sb.LineContact(
         **land, viscosity="40 mPa*s", speed=1e-3, roughness="1 um", alpha=2, beta=0.06, boundary_friction=0.3
@@ -413,3 +413,6 @@ def test_a_fluid_that_sucks_within_a_land_adds_to_the_load_of_asperities_on_curv
     assert states[-1].fluid_load_share < -0.01
     assert curve.observable("fluid_load_share") == pytest.approx([each.fluid_load_share for each in states], abs=2e-3)
     assert curve.friction.total == pytest.approx([each.friction.total for each in states], rel=2e-3)
+    spreads = sb.propagate(seal, {"boundary_friction": 0.1}, transitions=False)
+    assert spreads["contact_load_share"].median == pytest.approx(states[-1].contact_load_share, rel=1e-3)
+    assert spreads["friction"].median == pytest.approx(states[-1].friction.total, rel=1e-2)

@@ -58,7 +58,7 @@ def films_of(geometry: Geometry) -> tuple[str, ...]:
 
 
 class State(NamedTuple):
-    """Log odds of the load share, viscous friction and logarithms of :attr:`SampledStates.logs` of a state."""
+    """Log odds of the load share (its logarithm where the fluid sucks), viscous friction and :attr:`SampledStates.logs`."""
 
     values: Array
     slopes: Array  # Derivatives by the logarithms of the uncertain inputs, shape (inputs, values)
@@ -85,8 +85,15 @@ class SampledStates:
         observable = self.contact.friction_of_asperities.observable
         return (*films_of(self.contact.groups.geometry), *(() if observable == SHARES[0] else (observable,)))
 
+    @cached_property
+    def sucks(self) -> bool:
+        """Whether the fluid carries less than nothing, so that the shares have no odds."""
+        return bool(self.neighbours.solution(self.contact.groups, self.contact).fluid_load_share < -self.rtol)
+
     def log_slopes(self, name: str, state: State) -> Array:
         """Return the derivatives of the logarithm of the asperities' share, or of what is read as one, by the inputs."""
+        if name == SHARES[0] and self.sucks:
+            return state.slopes[:, 0]
         if name == SHARES[0]:
             return np.asarray(state.slopes[:, 0] / (1 + math.exp(min(state.values[0], 700.0))))
         return np.asarray(state.slopes[:, VISCOUS + 1 + self.logs.index(name)])
@@ -123,7 +130,7 @@ class SampledStates:
             values, slopes = self.at(place @ units)
             return State(values, units @ slopes)
 
-        return _sampled_until_confirmed(places, solved, friction, self.logs)
+        return _sampled_until_confirmed(places, solved, friction, self.logs, self.sucks)
 
     def _directions(self, sigmas: Array) -> Array:
         """Return the combinations of standard normal inputs that move the state, as orthonormal rows."""
@@ -164,8 +171,8 @@ class SampledStates:
         for i, (_, (below, above, width)) in enumerate(changed, 3):
             ends = [float(viscous_of(parts, groups.speed, groups.load, each)) for each in (below, above)]
             through[i] = (ends[1] - ends[0]) / width
-        odds = _log(by[SHARES[0]]) - _log(by[SHARES[1]])
-        found = [odds, Dual(viscous.value, viscous.slope + through) / inputs["beta"], *(_log(by[name]) for name in self.logs)]
+        share = _log(by[SHARES[0]]) - (0.0 if self.sucks else _log(by[SHARES[1]]))
+        found = [share, Dual(viscous.value, viscous.slope + through) / inputs["beta"], *(_log(by[name]) for name in self.logs)]
         slopes = np.array([each.slope for each in found]).T
         by_inputs = self.of_groups @ slopes[:3]
         for row, (k, _) in zip(slopes[3:], changed, strict=True):
@@ -194,18 +201,22 @@ class SampledStates:
 
 
 def _sampled_until_confirmed(
-    places: Array, solved: Callable[[Array], State], friction: Callable[[dict[str, Array]], Array], logs: Sequence[str]
+    places: Array,
+    solved: Callable[[Array], State],
+    friction: Callable[[dict[str, Array]], Array],
+    logs: Sequence[str],
+    sucks: bool,
 ) -> tuple[dict[str, Array], tuple[str, ...]]:
     """Return samples that are read between states, as many as confirm the ends of the interval of friction, and notes."""
     # Each round solves samples at both ends and some anywhere, as many each as fix a plane over the inputs, compares them with
     # what was read there, and reads anew.
     middle = np.zeros(places.shape[1])
     start, some = solved(middle), len(middle) + 1
-    lengths = _lengths(start)
+    lengths = _lengths(start, sucks)
     known, random = [(middle, start)], np.random.default_rng(SEED)
     tried = np.zeros(len(places), dtype=bool)
     while True:
-        found = _read(known, places, lengths, logs)
+        found = _read(known, places, lengths, logs, sucks)
         predicted = friction(found)
         if not len(middle):
             return found, ()
@@ -222,25 +233,28 @@ def _sampled_until_confirmed(
                     new[i] = solved(places[i])
             exact = {name: values.copy() for name, values in found.items()}
             for i, state in new.items():
-                for name, values in _by_name(state.values[None], 0.0, logs).items():
+                for name, values in _by_name(state.values[None], 0.0, logs, sucks).items():
                     exact[name][i] = values[0]
             differences = np.abs(friction(exact) - predicted)[list(new)]
             wrong = max(wrong, differences.max(initial=0.0 if new else math.inf))
             known += [(places[i], state) for i, state in new.items()]
         if wrong <= INTERVAL_END_RTOL * width or tried.sum() + 3 * some > MAX_SOLVED_SAMPLES:
-            found = _read(known, places, lengths, logs)
+            found = _read(known, places, lengths, logs, sucks)
             return found, _interval_notes(wrong / width if width else 0.0, int(tried.sum()), len(known) - 1)
 
 
-def _lengths(state: State) -> Array:
+def _lengths(state: State, sucks: bool) -> Array:
     """Return how far inputs move until a state changes by its own size, at most one."""
     size = np.ones_like(state.values)
-    size[0] = 4 * math.cosh(state.values[0] / 2) ** 2  # of log odds over that of the share
+    if not sucks:
+        size[0] = 4 * math.cosh(state.values[0] / 2) ** 2  # of log odds over that of the share
     size[VISCOUS] = abs(state.values[VISCOUS]) or 1.0
     return lengths_of(state.slopes / size)
 
 
-def _read(known: Sequence[tuple[Array, State]], places: Array, lengths: Array, logs: Sequence[str]) -> dict[str, Array]:
+def _read(
+    known: Sequence[tuple[Array, State]], places: Array, lengths: Array, logs: Sequence[str], sucks: bool
+) -> dict[str, Array]:
     """Return states at places, read between known ones."""
     signs = {float(np.sign(state.values[VISCOUS])) for _, state in known}
     sign = signs.pop() if len(signs) == 1 else 0.0  # a drag that changes its sign has no logarithm
@@ -251,14 +265,14 @@ def _read(known: Sequence[tuple[Array, State]], places: Array, lengths: Array, l
             y[VISCOUS] = math.log(abs(values[VISCOUS]))
             by[:, VISCOUS] /= values[VISCOUS]
         scattered.add(place, y, by)
-    return _by_name(scattered.values(places), sign, logs)
+    return _by_name(scattered.values(places), sign, logs, sucks)
 
 
-def _by_name(y: Array, sign: float, logs: Sequence[str]) -> dict[str, Array]:
+def _by_name(y: Array, sign: float, logs: Sequence[str], sucks: bool) -> dict[str, Array]:
     """Return load share, viscous friction and what is read as logarithms."""
-    odds, viscous, *films = y.T
+    share, viscous, *films = y.T
     return {
-        "contact_load_share": 1 / (1 + np.exp(-np.clip(odds, -700, 700))),
+        "contact_load_share": np.exp(share) if sucks else 1 / (1 + np.exp(-np.clip(share, -700, 700))),
         "viscous": sign * np.exp(viscous) if sign else viscous,
         **{name: np.exp(film) for name, film in zip(logs, films, strict=True)},
     }
