@@ -278,6 +278,13 @@ def test_viscosity_has_no_margin_where_speed_does_not_stand_for_it(subtests):
             assert any("Viscosity has no margins" in note for note in found.notes)
 
 
+def test_a_margin_of_the_roughness_of_a_spectrum_says_that_it_keeps_beta(mixed):
+    law = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=4e4, q1=4e6, hurst=0.8))
+    found = regime_margins(CONTACT.replace(law=law, **law.coefficients), rtol=1e-2)
+    assert any("roughness keep beta" in note for note in found.notes)
+    assert not any("beta" in note for note in mixed.notes)
+
+
 def test_slow_speeds_at_which_the_fluid_keeps_its_share_are_not_searched():
     heavy = CONTACT.replace(load="600 N/m")
     assert heavy.groups.load > 1

@@ -23,6 +23,7 @@ from stribeck.contacts.friction import (
 )
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.groups import Geometry
+from stribeck.contacts.inputs import follows_surface
 from stribeck.contacts.with_parts import exponents_of, known_speeds
 from stribeck.curves.coordinate import Over
 from stribeck.curves.friction_path import FrictionPath
@@ -402,6 +403,11 @@ def regime_margins(
         notes.append(
             "At load groups of 1 or more, the fluid carries part of the load at every speed; there may be no "
             "boundary lubrication."
+        )
+    if contact.speed > 0 and follows_surface(contact, {"roughness"}):
+        notes.append(
+            "Margin and slope of the roughness keep beta, as if wavelengths grew with the height; levers of a report and "
+            "propagated errors let beta follow."
         )
     found = [scan.along(name) for name in SCANNED]
     if contact.friction_of_asperities.uses_speed:
