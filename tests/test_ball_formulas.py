@@ -313,6 +313,12 @@ def test_share_and_friction_at_any_speed_are_within_their_stated_errors():
     assert np.abs(found / viscous(groups, J, 0.1) - 1)[inside].max() <= friction.viscous_friction.worst
 
 
+def test_the_share_under_the_thickest_film_and_the_largest_load_is_within_its_stated_error():
+    groups = ball(0.0207, 0.7, 6.92e-3)
+    error = float(sharing.contact_load_share(groups)) / sb.solve(groups, rtol=1e-4).contact_load_share - 1
+    assert 0.09 < error <= sharing.contact_load_share.worst
+
+
 def test_friction_by_both_definitions_is_within_its_stated_error_over_the_whole_box(subtests):
     for definition in ["balanced", "published"]:
         with subtests.test(definition=definition):

@@ -41,7 +41,7 @@ MAX_ROUGHNESS = 100.0  # Relative roughness above which the film across cannot b
     geometry="point",
     limits=(*FIT_RANGE, Limit("film_ratio", 0.0, 6.0)),
     undefined="from load 1 and above roughness 100 on",
-    worst=0.09,
+    worst=0.1,
     source="ours",
 )
 def contact_load_share(groups: Groups) -> Value:
