@@ -94,6 +94,16 @@ def test_ratios_are_over_the_row_that_is_named(folder):
     assert found.predicted == pytest.approx([1.0, frictions()[1] / frictions()[0]], rel=1e-6)
     assert found.ratio == pytest.approx([1.0, 1.0], rel=1e-6)
     assert found.predicted_error[0] == pytest.approx(0.0, abs=1e-5)
+    assert found.measured_error[0] == 0
+    assert found.measured_error[1] == pytest.approx(math.hypot(0.001 / frictions()[0], 0.002 / frictions()[1]) / 1.25)
+
+
+def test_friction_in_percent_is_a_hundredth(folder):
+    measured = load_experiment(folder).measured
+    replace_in(folder / "friction.csv", "friction;error", "friction [%];error [%]")
+    percent = load_experiment(folder)
+    assert percent.measured == pytest.approx(measured / 100)
+    assert percent.measured_error == pytest.approx(load_experiment(filled(folder)).measured_error)
 
 
 def test_a_force_is_that_of_the_load_over_the_length(folder):
@@ -133,6 +143,8 @@ def test_what_is_not_stated_is_refused(subtests, folder):
         ("friction.csv", "friction;error", "friction;scatter", "one column error"),
         ("friction.csv", "friction;error", "mu;error", r"friction or friction_force \[N\]"),
         ("friction.csv", ";0.001", ";0", "must be positive"),
+        ("friction.csv", "friction;error", "friction [N];error", "friction = 'N'"),
+        ("friction.csv", "friction;error", "friction;error [%]", "must have the same unit"),
         ("friction.csv", "speed [mm/s]", "temperature [K]", "temperature"),
     ]:
         with subtests.test(file=file, old=old, new=new, words=words):

@@ -14,6 +14,7 @@ from stribeck._types import Array
 from stribeck.cases.case import Case
 from stribeck.cases.reading import check_case
 from stribeck.files.cells import split_header
+from stribeck.files.columns import si_factor
 from stribeck.files.results import Exported, Labelled
 from stribeck.files.table_reading import read_table
 from stribeck.files.text_table import TextTable
@@ -253,6 +254,7 @@ def predict_experiment(experiment: Experiment, model: str, on_state: Callable[[i
     if experiment.relative_to is not None:
         k = experiment.relative_to - 1
         values, measured, errors = values / values[:, k : k + 1], measured / measured[k], np.hypot(errors, errors[k])
+        errors[k] = 0.0
     apart = np.log(values[1:] / values[0])
     solver = ROW_RTOL[str(experiment.models[model]["contact"].get("geometry", "line"))]
     return Prediction(experiment, model, values[0], np.sqrt((apart**2).sum(axis=0) + solver**2), measured, errors)
@@ -324,8 +326,12 @@ def _rows(table: TextTable) -> tuple[tuple[str, ...], tuple[dict[str, Any], ...]
             raise InputError(f"{table.path}: {name} must be positive in every row.")
     labels = tuple(table.column(names[ROW])) if texts else tuple(map(str, range(1, len(table.rows) + 1)))
     is_force = measured[0] == FORCE
-    factors = [to_si(f"1 {units[each]}", "force", each) if is_force else 1.0 for each in (*measured, ERROR)]
-    return labels, varied, read[measured[0]] * factors[0], read[ERROR] * factors[1], is_force
+    factor, of_error = (si_factor(units[each], "force" if is_force else "number", each) for each in (*measured, ERROR))
+    if factor != of_error:
+        raise InputError(
+            f"{table.path}: {measured[0]} [{units[measured[0]]}] and {ERROR} [{units[ERROR]}] must have the same unit."
+        )
+    return labels, varied, read[measured[0]] * factor, read[ERROR] * factor, is_force
 
 
 def _refuse(path: Path, problems: list[str]) -> None:
