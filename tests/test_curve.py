@@ -261,3 +261,11 @@ def test_a_curve_does_not_end_where_the_central_gap_bends_most():
     curve = sb.stribeck_curve(load=0.4, roughness=4e-5, speed=np.logspace(-9, 2, 34), rtol=1e-7)
     assert curve.outcome.ok and len(curve) == 34
     assert curve.error_estimate <= 1e-7
+
+
+@pytest.mark.slow
+def test_nodes_that_rounding_makes_one_divide_nothing_by_zero():
+    # Warnings are errors here; the film is thinnest at a kink, around which panels are as narrow as rounding lets them.
+    groups = sb.Groups(3.688212788240314e-06, 0.0858, 0.4741578500804608)
+    curve = sb.stribeck_curve(groups, load=(0.00040470158148482306, 18.19043658207579), points=3, rtol=0.0050714071597535194)
+    assert 1 <= len(curve) <= 3

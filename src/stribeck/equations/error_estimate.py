@@ -306,11 +306,12 @@ def position_error(mesh: Mesh, gap: Array, changes: Array, position: float, dept
 def _farthest_rival(mesh: Mesh, gap: Array, position: float, panel: int, depth: float) -> float:
     """Return the distance of the farthest other minimum that may be the deeper one, zero if there is none."""
     x, gap = mesh.nodes[: -mesh.order], gap[: -mesh.order]  # without the panel through infinity
+    apart = np.append(True, np.diff(x) > 0)  # rounding may make two nodes of the narrowest panels one
+    panels, x, gap = (np.arange(len(x)) // mesh.order)[apart], x[apart], gap[apart]
     left, middle, right = gap[:-2], gap[1:-1], gap[2:]
     rising = (middle - left) / (x[1:-1] - x[:-2])
     falling = (right - middle) / (x[2:] - x[1:-1])
-    apart = np.abs(np.arange(1, len(x) - 1) // mesh.order - panel) > 1
-    at = np.flatnonzero((rising <= 0) & (falling >= 0) & apart)
+    at = np.flatnonzero((rising <= 0) & (falling >= 0) & (np.abs(panels[1:-1] - panel) > 1))
     bend = (falling - rising)[at] / (x[at + 2] - x[at])  # of the parabola through the three nodes
     slope = rising[at] + bend * (x[at + 1] - x[at])
     bottom = middle[at] - 1.5 * slope**2 / (4 * np.maximum(bend, 1e-300))  # with half of the drop for what it misses
