@@ -211,6 +211,38 @@ def test_notes_say_the_share_of_friction_that_asperities_have_in_rolling(subtest
                 )
 
 
+def cause(notes):
+    """Return the share of the friction that notes say asperities cause [-]."""
+    [percent] = [share for note in notes for share in re.findall(r"cause (\S+) % of the friction", note)]
+    return float(percent) / 100
+
+
+def test_notes_say_the_share_of_the_friction_that_the_case_asks_for(capsys, tmp_path, no_scans):
+    contact = sb.load_case(PDMS).contact.replace(slide_to_roll=0.01, boundary_friction=0.03, speed="15 mm/s")
+    state = sb.solve(contact, rtol=1e-4)
+    balanced, published = (state.friction(definition=each).contact_share for each in ("balanced", "published"))
+    assert published < 0.91 * balanced and cause(state.notes) == pytest.approx(balanced, rel=0.04)
+    path = tmp_path / "case.toml"
+    text = PDMS.read_text().replace("[contact]", "[contact]\nslide_to_roll = 0.01")
+    for name, value in (("boundary_friction", "0.03"), ("speed", '"15 mm/s"')):
+        text = re.sub(f"(?m)^{name} .*$", f"{name} = {value}", text)
+    path.write_text(text.replace('"balanced"', '"published"'))
+    for command in ("solve", "regimes"):
+        said = json.loads(call(capsys, command, path, "--json").out)
+        assert cause(said["notes"][:1]) == pytest.approx(published, rel=0.04)
+        [check] = [each for each in said["checks"] if each["name"] == "contact law at the centre"]
+        assert cause([check["sentence"]]) == pytest.approx(published, rel=0.04)
+    curve = sb.stribeck_curve(contact, speed=(0.015, 0.016), points=2, definition="published", rtol=1e-4)
+    assert cause(curve.notes) == pytest.approx(published, rel=0.04)
+
+
+def test_notes_of_groups_are_for_the_coefficients_given_in_json_too(capsys):
+    words = ("solve", "--groups", "0.1", "0.1", "3e-3", "--boundary-friction", "0.01")
+    said = json.loads(call(capsys, *words, "--json").out)
+    assert cause(said["notes"]) == pytest.approx(said["friction_asperities"] / said["friction_balanced"], rel=0.06)
+    assert f"cause {100 * cause(said['notes']):.2g} %" in call(capsys, *words, "-v").out
+
+
 # --- suction that no film in the open bears ---
 
 ATMOSPHERE = 101_325.0
@@ -242,6 +274,15 @@ def test_suction_above_an_atmosphere_is_noted_with_its_value(subtests):
                 assert all(f"falls {atmospheres * ATMOSPHERE / 1e6:.3g} MPa below the ambient" in note for note in found)
             assert noted_suction(sb.solve(scaled.replace(speed=0.0))) == []
             assert noted_suction(sb.solve(scaled.groups)) == []
+
+
+def test_a_ball_has_one_suction_in_note_and_check():
+    """The note had that of the nodes, up to 1 % less than the check beside it."""
+    contact = sb.load_case(EXAMPLES / "pdms_ball.toml").contact.replace(modulus="27 MPa", load="10 N", speed="1 m/s")
+    state = sb.solve(contact, rtol=1e-3)
+    [note] = noted_suction(state)
+    assert state.largest_suction == pytest.approx(suction(state), rel=1e-4)
+    assert f"falls {state.largest_suction / 1e6:.3g} MPa below the ambient" in note
 
 
 @pytest.mark.quick

@@ -81,15 +81,17 @@ def test_states_that_are_no_grid_are_along_their_number(tmp_path):
     assert dict(found.sizes) == {"state": 3} and found.state.values.tolist() == [0, 1, 2]
 
 
-def test_regimes_are_by_the_definition_of_the_file(tmp_path):
+def test_regimes_and_notes_are_by_the_coefficients_and_definition_of_the_file(tmp_path):
     text = (
         "[solver]\ndefinition = 'published'\n[groups]\nload = 0.1\nroughness = 1e-3\nboundary_friction = 2e-4\nbeta = 0.05\n"
     )
-    found = sb.sweep(write(tmp_path, text + "[vary]\nspeed = [1e-3, 2e-3]\n"), tmp_path / "store")
+    found = sb.sweep(write(tmp_path, text + "[vary]\nspeed = [1e-3, 2e-3, 3e-2]\n"), tmp_path / "store")
     data = found.to_dataset()
     shares = [(data.friction_asperities / data[f"friction_{each}"]).values for each in ("balanced", "published")]
-    assert (shares[0] > 0.1).all() and (shares[1] < 0.1).all()
-    assert data.regime.values.tolist() == ["hydrodynamic"] * 2
+    assert (shares[0][:2] > 0.1).all() and (shares[1] < 0.1).all()
+    assert data.regime.values.tolist() == ["hydrodynamic"] * 3
+    state = sb.solve(sb.Groups(3e-2, 0.1, 1e-3))
+    assert data.message.values[2] == state.notes_for(2e-4, 0.05, "published")[0] != state.notes[0]
     assert data.attrs["definition"] == found.to_dict()["definition"] == "published"
     assert found.plot().axes[0].lines[0].get_ydata().tolist() == data.friction_published.values.tolist()
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.docstrings import Described
@@ -30,7 +31,7 @@ class Ended:
 
     outcome: Outcome  # PATH_LOST where the program failed
     solution: BaseSolution | None  # The state, or what was reached of it
-    message: str  # What there is to say about it; of a failure in sentences that name the groups
+    message: str  # How it failed, in a sentence that names the groups; else empty
     fault: Exception | None = None  # The error of the program that ended the solve
 
 
@@ -41,6 +42,7 @@ class States(Described):
     groups: Annotated[Array, "speed, load and roughness group of each state, shape (n, 3)"]
     physics: Annotated[Physics, "contact law and geometry of all states, and the model of the first"]
     rtol: Annotated[float, "relative tolerance of each state"]
+    definition: Annotated[Definition, "which friction notes, regimes and pictures go by"] = "balanced"
     contacts: Annotated[Objects | None, "the contacts in SI units that the states come from"] = None
     coefficients: Annotated[Array | None, "``boundary_friction`` and ``beta`` of each beside groups, shape (n, 2)"] = None
 
@@ -55,7 +57,7 @@ class States(Described):
         """Return some of the states."""
         arrays = {"groups": self.groups, "contacts": self.contacts, "coefficients": self.coefficients}
         own: dict[str, Any] = {name: None if each is None else each[rows] for name, each in arrays.items()}
-        return States(physics=self.physics, rtol=self.rtol, **own)
+        return States(physics=self.physics, rtol=self.rtol, definition=self.definition, **own)
 
     def problem(self, i: int) -> tuple[Groups, Contact | None]:
         """Return the groups of a state, and its contact where it has one."""
@@ -98,13 +100,12 @@ def _solved(neighbours: Neighbours, groups: Groups, contact: Contact | None) -> 
     """Return a state, or how its solve failed."""
     try:
         solution = neighbours.solution(groups, contact)
-        return Ended(solution.outcome, solution, "\n".join(solution.notes))
+        return Ended(solution.outcome, solution, "")
     except SolveError as failure:
         reached = failure.solution
         if reached is None:
             return Ended(failure.outcome, None, str(failure))
-        sentences = (reached.outcome.value, *reached.notes)
-        return Ended(reached.outcome, reached, f"{describe(groups)}: " + "\n".join(sentences))
+        return Ended(reached.outcome, reached, f"{describe(groups)}: {reached.outcome.value}")
     except MemoryError:
         raise
     except Exception as problem:  # a fault of the program must not cost the other states of a long run

@@ -66,14 +66,14 @@ def range_at_centre(subject: Subject) -> Check | None:
     state = subject.solution
     ratio = _ratio(subject, state)
     low, high = _range(subject)
-    notes = law_notes(state.groups, contact, state.observables)
+    notes = law_notes(state.groups, contact, state.observables, definition=subject.definition)
     verdict: Verdict = "fine"
     if notes:
         verdict = "doubtful" if ratio >= low else "outside"
     limit, common = (high if ratio > low else low), ""
     if notes:
         sentence = " ".join(notes)
-    elif matters(state.groups, contact, state.observables):
+    elif matters(state.groups, contact, state.observables, subject.definition):
         common = _in_common(contact, ratio)
         sentence = f"The central gap is {ratio:.3g} h_rms, inside the range of the contact law.{common}"
     else:

@@ -181,17 +181,18 @@ def _with_what_helps(check: Check, row: str, geometry: Geometry) -> Check:
     return replace(check, sentence=" ".join([check.sentence, *said]))
 
 
-def checks_of_solution(solution: Solution, facts: dict[str, float] | None = None) -> Checks | None:
+def checks_of_solution(
+    solution: Solution, facts: dict[str, float] | None = None, definition: Definition = "balanced"
+) -> Checks | None:
     """Return the checks of a solved state; None of groups alone."""
     if solution.contact is None:
         return None
-    return checks_of(Subject(solution.contact, facts or {}, solved=solution), "state")
+    return checks_of(Subject(solution.contact, facts or {}, definition, solution), "state")
 
 
 def checks_of_curve(
     curve: StribeckCurve,
     facts: dict[str, float] | None = None,
-    solution: Solution | None = None,
     *,
     is_whole: bool = False,
     on_point: Callable[[int, int], object] | None = None,
@@ -203,13 +204,10 @@ def checks_of_curve(
     contact = curve.contact if over_speed else curve.solutions[-1].contact
     assert contact is not None
     if is_whole:  # on a curve of its own: this one need not hold the minimum
-        found = checks_of(Subject(contact, facts or {}, curve.definition, solution, on_point=on_point))
+        found = checks_of(Subject(contact, facts or {}, curve.definition, on_point=on_point))
         return law.add_range_along_curve(found, curve.law_in_doubt)
-    subject = Subject(contact, facts or {}, curve.definition, solution, curve if over_speed else None)
-    found = checks_of(
-        subject, "curve" if over_speed and solution is not None else "state" if solution is not None else "contact"
-    )
-    if over_speed and solution is None:
-        minimum = law.range_at_minimum(subject)
-        found = replace(found, checks=(*found.checks, *([minimum] if minimum is not None else [])))
+    subject = Subject(contact, facts or {}, curve.definition, traced=curve if over_speed else None)
+    found = checks_of(subject, "contact")
+    minimum = law.range_at_minimum(subject) if over_speed else None
+    found = replace(found, checks=(*found.checks, *([minimum] if minimum is not None else [])))
     return law.add_range_along_curve(found, curve.law_in_doubt)

@@ -156,7 +156,7 @@ def solution_lines(
         body.insert(0, answer_sentence(solution, solution.friction(*given, definition)))
         body += number_lines(main_rows(solution, *given, definition))
         body += [] if solution.outcome.ok else [solution.outcome.value]
-    return report_lines(solution, case, checks, body, solution.notes_for(*given), "" if verbose else MORE_OF_STATE)
+    return report_lines(solution, case, checks, body, solution.notes_for(*given, definition), "" if verbose else MORE_OF_STATE)
 
 
 def _coefficients(solution: BaseSolution, boundary_friction: float | None, beta: float | None) -> list[str]:

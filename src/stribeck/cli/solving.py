@@ -69,13 +69,15 @@ def solve_command(
     from stribeck.cli import reports
     from stribeck.solver.base_solution import regime_of_state
 
-    checks = checks_of_solution(solution, loaded.facts) if loaded else None
+    checks = checks_of_solution(solution, loaded.facts, loaded.definition) if loaded else None
     said = solution, loaded, mu, b, checks, verbose
 
     def content() -> dict[str, Any]:
         found: dict[str, Any] = solution.to_dict(mu, b)
         if loaded:
-            found |= {"definition": loaded.definition, "regime": regime_of_state(solution, loaded.definition)}
+            definition = loaded.definition
+            found |= {"definition": definition, "regime": regime_of_state(solution, definition)}
+            found["notes"] = list(solution.notes_for(definition=definition))
         return found
 
     answer(outputs.json, content, lambda: reports.solution_lines(*said), checks, loaded, written)

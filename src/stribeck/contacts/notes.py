@@ -8,7 +8,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.finite_surface import has_endless_tail
 from stribeck.contact_laws.law import is_exponential, largest_load
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import friction_share
+from stribeck.contacts.friction import Definition, friction_share
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.fluids.fluid import Film
@@ -36,7 +36,7 @@ TAIL_ADVICE = ", by 10 to 20 % (stribeck check gives the amount)."  # Ends the n
 ATMOSPHERE = 1.01325e5  # Ambient pressure [Pa], the largest suction of a contact in the open
 
 
-# The observables of a state of any geometry: contact_load_share, central_gap, minimum_gap and viscous_friction(beta)
+# The observables of a state of any geometry: contact_load_share, central_gap, minimum_gap, and viscous_friction by beta
 Values = Any
 
 
@@ -86,12 +86,16 @@ def width_notes(contact: Contact) -> tuple[str, ...]:
 
 
 def law_notes(
-    groups: Groups, contact: Contact | None, values: Values, given: tuple[float, float] | None = None
+    groups: Groups,
+    contact: Contact | None,
+    values: Values,
+    given: tuple[float, float] | None = None,
+    definition: Definition = "balanced",
 ) -> tuple[str, ...]:
     """Return the sentences that say where the contact law leaves its range while asperities still matter."""
     if groups.roughness == 0:
         return ()
-    shares = _shares(groups, contact, values, given)
+    shares = _shares(groups, contact, values, given, definition)
     if not max(shares) > NEGLIGIBLE_SHARE:
         return ()
     ratio, measured = _gap_ratio(groups, contact, values)
@@ -118,9 +122,9 @@ def law_notes(
     return (*notes, *far)
 
 
-def matters(groups: Groups, contact: Contact | None, values: Values) -> bool:
+def matters(groups: Groups, contact: Contact | None, values: Values, definition: Definition) -> bool:
     """Return whether asperities have more than 1 % of load or friction, so that their contact law matters."""
-    return max(_shares(groups, contact, values)) > NEGLIGIBLE_SHARE
+    return max(_shares(groups, contact, values, None, definition)) > NEGLIGIBLE_SHARE
 
 
 def minimum_note(groups: Groups, contact: Contact | None, values: Values, friction: float, where: str) -> str:
@@ -146,7 +150,7 @@ def _gap_ratio(groups: Groups, contact: Contact | None, values: Values) -> tuple
 
 
 def _shares(
-    groups: Groups, contact: Contact | None, values: Values, given: tuple[float, float] | None = None
+    groups: Groups, contact: Contact | None, values: Values, given: tuple[float, float] | None, definition: Definition
 ) -> tuple[float, float]:
     """Return the asperities' shares of load and friction."""
     boundary, beta = (1.0, USUAL_BETA) if given is None else given
@@ -154,7 +158,7 @@ def _shares(
         boundary, beta = contact.friction_of_asperities.coefficient_at_small_area(contact), contact.beta
     rule = RULES[groups.geometry]
     dry = boundary * values.contact_load_share * rule.sliding_factor(groups, rule.of_contact(contact))
-    return values.contact_load_share, float(friction_share(dry, values.viscous_friction(beta)))
+    return values.contact_load_share, float(friction_share(dry, values.viscous_friction(beta, definition)))
 
 
 def _range(groups: Groups) -> str:

@@ -336,11 +336,10 @@ class StribeckCurve(Exported, Shown, ByValue):
     @cached_property
     def _law_notes(self) -> list[tuple[str, ...]]:
         """What is to be said of the contact law at each point."""
-        balanced = self.friction if self.definition == "balanced" else self.friction(definition="balanced")
         read = [self.observable(name) for name in ("contact_load_share", "central_gap", "minimum_gap")]
-        rows = zip(np.log(self.values).tolist(), *(each.tolist() for each in (*read, balanced.fluid)), strict=True)
+        rows = zip(np.log(self.values).tolist(), *(each.tolist() for each in (*read, self.friction.fluid)), strict=True)
         given, groups_at = (self.boundary_friction, self.beta), self._path.source.coordinate.groups_at
-        return [law_notes(groups_at(s), self.contact, _Read(*each), given) for s, *each in rows]
+        return [law_notes(groups_at(s), self.contact, _Read(*each), given, self.definition) for s, *each in rows]
 
     @property
     def error_estimate(self) -> float:
@@ -351,7 +350,7 @@ class StribeckCurve(Exported, Shown, ByValue):
     def notes(self) -> tuple[str, ...]:
         """What to know before using the numbers; each sentence names the points, or the minimum, that it concerns."""
         found: dict[str, list[tuple[float, str]]] = {}
-        given = self.boundary_friction, self.beta
+        given = self.boundary_friction, self.beta, self.definition
         # Off the atlas there are no states, whose pressures would say more.
         told_of = [each.notes_for(*given) for each in self.solutions] if self.states else self._law_notes
         for value, notes in zip(self.values.tolist(), told_of, strict=True):
@@ -459,6 +458,6 @@ class _Read:
     minimum_gap: float
     viscous: float
 
-    def viscous_friction(self, beta: float) -> float:
-        """Return the viscous friction, which is known for the curve's own beta alone."""
+    def viscous_friction(self, beta: float, definition: Definition) -> float:
+        """Return the viscous friction, which is known for the curve's own beta and definition alone."""
         return self.viscous

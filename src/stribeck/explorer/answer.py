@@ -16,7 +16,6 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.checks.check import Checks
-from stribeck.checks.law import add_range_along_curve
 from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
 from stribeck.contacts.contact import Contact
@@ -85,7 +84,7 @@ class Answer:
     inputs: Inputs  # What was asked
     solution: Solution | PointSolution  # The state
     regime: Regime  # Its regime
-    checks: Checks  # Whether the model applies: what the state and the curve decide, and at rest all
+    checks: Checks  # Whether the model applies: what the state decides, and at rest all
     spread: Uncertainty | None  # What the errors of the inputs leave open in the state; at rest, where some are given
     curve: Curve | None  # The curve through it
     why: str  # Why the curve could not be solved
@@ -128,7 +127,7 @@ class Answerer:
         diagram, is_old_diagram = self._newest("diagram", geometry, self._kept.get(key))
         margins, is_old_margins = self._newest("margins", geometry, self._kept.get(_known_key("margins", inputs)))
         old = {"curve": is_old, "diagram": is_old_diagram, "margins": is_old_margins}
-        checks = self._keep(("checks", contact, inputs.known), lambda: checks_of(_subject(inputs, solution), "state"))
+        checks = self._keep(_known_key("checks", inputs), lambda: checks_of(_subject(inputs, solution), "state"))
         plane = None
         if isinstance(solution, PointSolution):
             side = np.linspace(-MAP_HALF_SIDE, MAP_HALF_SIDE, MAP_POINTS)
@@ -137,7 +136,7 @@ class Answerer:
             inputs=inputs,
             solution=solution,
             regime=regime_of(solution.fluid_load_share, solution.friction(definition=definition).contact_share),
-            checks=checks if curve is None else add_range_along_curve(checks, curve.doubtful),
+            checks=checks,
             spread=self._kept.get(_known_key("spread", inputs)),
             curve=curve,
             why=str(self._kept.get(("why", _key(contact), definition), "")),
@@ -227,7 +226,7 @@ class Answerer:
 
     def _find_checks(self, inputs: Inputs, report: Report) -> Iterator[None]:
         """Make the checks that need the curve, or another one."""
-        key, last = ("checks", inputs.contact, inputs.known), self._last_state
+        key, last = _known_key("checks", inputs), self._last_state
         if ("all", *key) not in self._kept:
             solution = last[1] if last is not None and last[0] == inputs.contact else None
             self._put(key, checks_of(_subject(inputs, solution, report)))
@@ -288,7 +287,7 @@ def _key(contact: Contact, *without: str) -> tuple[Any, ...]:
 
 
 def _known_key(what: str, inputs: Inputs) -> tuple[Any, ...]:
-    """Return what margins, and the propagated errors of a state, depend on."""
+    """Return what checks, margins and the propagated errors of a state depend on."""
     return (what, inputs.contact, inputs.case.definition, inputs.known)
 
 

@@ -154,7 +154,8 @@ def notes_of(notes: Iterable[str]) -> list[str]:
 
 def notes_of_state(answer: Answer) -> list[str]:
     """Return the notes on a state and on what to change, and which errors the intervals count."""
-    notes = [note for note in answer.solution.notes if not answer.checks.covers(note)]
+    of_state = answer.solution.notes_for(definition=answer.inputs.case.definition)
+    notes = [note for note in of_state if not answer.checks.covers(note)]
     margins = answer.margins
     about = [margins.counted, *margins.notes] if isinstance(margins, RegimeMargins) else [without_rtol(margins or "")]
     return notes_of(dict.fromkeys([*notes, *([] if answer.spread is None else answer.spread.sources), *about]))

@@ -42,7 +42,7 @@ class Overview:
     no_sensitivities: str  # Why there are none; empty where there are some
     curve: StribeckCurve  # The curve over the speed through it
     margins: RegimeMargins  # The way to the next regimes
-    checks: Checks | None  # Whether the model applies
+    checks: Checks  # Whether the model applies
     errors: Uncertainty | None  # Uncertainty of the results, if inputs have errors
 
     @property
@@ -53,7 +53,7 @@ class Overview:
     @property
     def notes(self) -> list[str]:
         """What to know of the state, of the minimum of friction and of the margins."""
-        return [*self.solution.notes, *self.curve.minimum_notes, *self.margins.notes]
+        return [*self.solution.notes_for(definition=self.curve.definition), *self.curve.minimum_notes, *self.margins.notes]
 
     @property
     def error_estimate(self) -> float:
@@ -93,7 +93,7 @@ def overview_of(case: Case, on_point: Callable[[int, int], object] | None = None
     margins = with_intervals(contact, margins, case.errors, definition)
     errors = propagate(contact, case.errors, definition=definition) if case.errors else None
     whole = Subject(contact, case.facts, definition, solution, curve)
-    checks = checks_of(whole) if is_whole else checks_of_curve(curve, case.facts, solution)
+    checks = checks_of(whole, "tail" if is_whole else "curve")
     return Overview(case, solution, sensitivities, reason, curve, margins, checks, errors)
 
 

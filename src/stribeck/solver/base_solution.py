@@ -14,7 +14,7 @@ from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.contact import Contact, HertzScales, model_words
 from stribeck.contacts.friction import Definition, Friction, Regime, check_definition, coefficients, regime_of
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.notes import law_notes
+from stribeck.contacts.notes import law_notes, shape_notes
 from stribeck.files.datasets import Column, new_dataset, number_columns
 from stribeck.files.results import Exported
 from stribeck.numerics.settings import PLACES_AROUND_NODE
@@ -44,13 +44,19 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
     law: str
     observables: Any
 
-    def notes_for(self, boundary_friction: float | None, beta: float | None) -> tuple[str, ...]:
-        """Return the notes with the coefficients that are given beside groups, instead of usual ones."""
-        if self.contact is not None or (boundary_friction is None and beta is None):
+    def notes_for(
+        self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition = "balanced"
+    ) -> tuple[str, ...]:
+        """Return the notes by one definition of friction, and with coefficients beside groups in place of usual ones."""
+        given = None
+        if self.contact is None and not (boundary_friction is None and beta is None):
+            given = 1.0 if boundary_friction is None else boundary_friction, 1.0 if beta is None else beta
+        if (given is None and definition == "balanced") or not self.outcome.ok:
             return self.notes
-        usual = law_notes(self.groups, None, self.observables)
-        given = 1.0 if boundary_friction is None else boundary_friction, 1.0 if beta is None else beta
-        return (*law_notes(self.groups, None, self.observables, given), *(note for note in self.notes if note not in usual))
+        problem, shape = (self.groups, self.contact, self.observables), len(shape_notes(self.contact))
+        usual = law_notes(*problem)
+        others = [note for note in self.notes if note not in usual]
+        return (*others[:shape], *law_notes(*problem, given, definition), *others[shape:])
 
     @property
     @abstractmethod
@@ -328,7 +334,7 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
             "nodes": self.nodes,
             "outcome": self.outcome.name,
             "message": self.outcome.value,
-            "notes": list(self.notes),
+            "notes": list(self.notes_for(boundary_friction, beta)),
         }
 
     def _with_numbers(self, fields: xarray.Dataset) -> xarray.Dataset:

@@ -23,7 +23,6 @@ from stribeck.cases.tables import HEAD, Key, Keys, noted, read_tables
 from stribeck.checks.body import unusual
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.groups import Geometry, Groups, Physics
 from stribeck.files.datasets import Column
@@ -64,7 +63,6 @@ class SweepDesign(Tabled, Shown, States):
         "every input at every state: in SI units, or ``boundary_friction`` and ``beta`` beside the groups",
     ]
     law: Annotated[Law, "name of the contact law"]
-    definition: Annotated[Definition, "which friction the regimes and the picture show"]
 
     def _labelled(self) -> Labelled:
         columns: dict[str, Column] = {name: ("state", *each) for name, each in self.input_columns.items()}

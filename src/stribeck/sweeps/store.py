@@ -68,7 +68,8 @@ def row_of(ended: Ended, states: States, i: int) -> Row:
     stated = (each.stated for each in numbers_of(solution, boundary_friction, beta, with_fields=False))
     numbers = {name: number for each in stated for name, number in each.items()}
     numbers |= {name: (float(getattr(solution, name)), *COLUMNS[name]) for name in ("nodes", "newton_steps")}
-    return Row(numbers, ended.outcome.name, ended.message)
+    notes = solution.notes_for(boundary_friction, beta, states.definition)
+    return Row(numbers, ended.outcome.name, "\n".join(filter(None, [ended.message, *notes])))
 
 
 class Store:

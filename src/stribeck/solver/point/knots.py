@@ -259,7 +259,7 @@ class KnotState(ByValue, PointState):
 
     @property
     def lowest_pressure(self) -> float:
-        """The lowest film pressure at the nodes of the states around [p_Hz]."""
+        """The lowest film pressure of the states around [p_Hz]."""
         _, path, s = self._place
         around = np.argsort(np.abs(path.coordinates - s))[:2]
         return min(float(path.knots[i].state.lowest_pressure) for i in around.tolist())

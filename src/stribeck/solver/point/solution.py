@@ -169,6 +169,11 @@ class PointSolution(BaseSolution):
     def _along(self) -> Profile:
         return self.profile(self.x)
 
+    @property
+    def largest_suction(self) -> float:
+        """Largest pressure of the fluid below the ambient in SI units [Pa]; zero where it is nowhere below."""
+        return max(0.0, -self.state.lowest_pressure) * self._hertz("largest_suction").pressure
+
     def profile(self, x: Array) -> Profile:
         """Return the fields along the middle line.
 

@@ -10,6 +10,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from stribeck._types import Array
 from stribeck.contact_laws.law import area_slope
 from stribeck.contacts.contact import Contact
@@ -21,6 +23,7 @@ from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.equations.point.observables import OBSERVABLES, WITHIN, FrictionWithin, observables
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.fluids.fluid import Cavitation
+from stribeck.numerics.settings import PLACES_AROUND_NODE
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import AREA
@@ -82,10 +85,13 @@ class PointState:
         apart = WITHOUT_TOLERANCE if is_full else (*WITHOUT_TOLERANCE, *LOOSE_OBSERVABLES)
         return max((error for name, error in self.errors.items() if name not in apart), default=math.nan)
 
-    @property
+    @cached_property
     def lowest_pressure(self) -> float:
-        """Lowest film pressure at the nodes [p_Hz]."""
-        return float(self.nodal_fluid_pressure.min())
+        """Lowest film pressure, on the middle line also between the nodes [p_Hz]."""
+        x = np.concatenate([-self.mesh.radii[::-1], self.mesh.radii])
+        node = int(np.clip(np.argmin(self.fields(x, 0 * x).fluid_pressure), 1, len(x) - 2))
+        around = np.linspace(x[node - 1], x[node + 1], PLACES_AROUND_NODE)
+        return float(min(self.nodal_fluid_pressure.min(), self.fields(around, 0 * around).fluid_pressure.min()))
 
     @cached_property
     def within(self) -> Callable[[int, float], float] | None:
