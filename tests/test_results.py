@@ -1,5 +1,6 @@
 """What results have in common: they show themselves in a screen, are equal by value, draw into axes, have one friction."""
 
+import json
 import pickle
 
 import numpy as np
@@ -131,6 +132,13 @@ def test_a_state_and_a_curve_are_in_si_units(state, curve):
     np.testing.assert_allclose(curve.to_dataset().minimum_film_position, places, rtol=1e-14)
     with pytest.raises(sb.InputError, match="to_si needs the Hertz scales"):
         sb.stribeck_curve(load=0.1, roughness=1e-4, speed=[1e-4, 2e-4]).to_si()
+
+
+def test_a_state_and_a_curve_are_ready_for_json(state, curve):
+    for each in (state, curve):
+        assert set(json.loads(json.dumps(each.to_dict()))) == set(each.to_dict())
+    points = json.loads(json.dumps(curve.to_dict()))["points"]
+    assert points["value"] == curve.values.tolist() and points["friction"] == curve.friction.tolist()
 
 
 def test_an_error_is_absolute_and_in_the_unit_of_its_number(state, curve):

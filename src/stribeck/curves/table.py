@@ -38,7 +38,7 @@ def curve_dict(curve: Any) -> dict[str, Any]:
         "beta": curve.beta,
         "minimum": None if curve.minimum is None else curve.minimum.to_dict(),
         **marks_of(curve),
-        "points": {"value": curve.values, **{name: values for name, (values, _, _) in _columns(curve).items()}},
+        "points": {"value": curve.values.tolist(), **{name: each.tolist() for name, (each, _, _) in _columns(curve).items()}},
         "requested_points": curve.requested,
         "complete": curve.outcome.ok,
         "error_estimate": curve.error_estimate,
