@@ -56,6 +56,14 @@ def test_intervals_of_three_scans_cover_as_they_say(subtests):
             assert max(misses(40, spread).values()) <= 4
 
 
+def test_a_roll_off_that_no_scan_shows_alone_has_a_wavelength():
+    scans = [place(21), place(35)]
+    assert not any("roll_off" in each.fit.found for each in scans)
+    surface = combine(scans)
+    assert surface.to_dict()["roll_off_wavelength"] == pytest.approx(2 * math.pi / surface.roughness.roll_off)
+    assert "roll-off wavelength" in str(surface) and "0 of 2 scans alone do" in str(surface)
+
+
 @pytest.fixture(scope="module")
 def surface():
     return combine([place(seed) for seed in (0, 1, 2)])

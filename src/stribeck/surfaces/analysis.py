@@ -6,6 +6,7 @@ Each step is a function of its own: read, repair, detrend, spectrum, fit, contac
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
@@ -125,8 +126,7 @@ class Surface(Exported, Told):
             Number("hurst", "Hurst exponent", "Hurst exponent of the fitted spectrum", r.hurst, fitted["hurst"]),
             *(Number(name, "", f"wave number of the {WAVES[name]}", _number(q), _number(error), unit="m-1")
               for name, q, error in lengths),
-            *(_length(WAVES[name].replace(" ", "_"), WAVES[name], f"{WAVES[name]} of the fitted spectrum", 2 * math.pi / q,
-                      None if error is None else 2 * math.pi / q * error / q) for name, q, error in lengths if q is not None),
+            *(wavelength(name, q, error) for name, q, error in lengths if q is not None),
             Number("rms_slope", "rms slope, grows with finer sampling", "rms slope", spectrum.rms_slope),
             Number("rms_curvature", "rms curvature, grows too", "rms curvature", spectrum.rms_curvature, unit="m-1",
                    dimension="wavenumber"),
@@ -184,6 +184,14 @@ class Surface(Exported, Told):
 
 def _length(name: str, label: str, meaning: str, value: float | None, error: float | None = None) -> Number:
     return Number(name, label, meaning, _number(value), _number(error), unit="m", dimension="length")
+
+
+def wavelength(name: str, q: float, error: float | None = None) -> Number:
+    """Return an end of the fitted spectrum as the length of its wave, by the name that it has in a case."""
+    wave, length = WAVES[name], 2 * math.pi / q
+    return _length(
+        re.sub(r"\W", "_", wave), wave, f"{wave} of the fitted spectrum", length, None if error is None else length * error / q
+    )
 
 
 def _number(value: float | None) -> float:

@@ -20,7 +20,7 @@ from stribeck.quantities.formats import Number, format_si, plain_numbers
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.units import InputError, show
-from stribeck.surfaces.analysis import WAVES, Surface
+from stribeck.surfaces.analysis import Surface, wavelength
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum
 from stribeck.surfaces.self_affine_fit import STANDARD_ERRORS_95, Estimate, SelfAffineFit, fit_self_affine
 
@@ -98,8 +98,8 @@ class CombinedSurface(Exported, Told):
             low, high = _ends(name, value, error)
             shown = each[0][name]
             if shown.unit == "m-1":  # reports have the wavelength
+                shown = wavelength(name, value)
                 value, low, high = (2 * math.pi / end for end in (value, high, low))
-                shown = next(found[length] for found in each if (length := WAVES[name].replace(" ", "_")) in found)
             fitted.append(replace(shown, value=value, error=math.nan, interval=(low, high)))
         labels = {"alpha": "decay of the contact law, alpha", "beta": "scale of the contact law, beta"}
         law = [
