@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from command_line import call, call_outside, case_text
+from command_line import EXAMPLES, call, call_outside, case_text
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
@@ -97,6 +97,7 @@ def test_all_problems_of_a_file_are_told_at_once_each_on_its_line(capsys, folder
 # --- arguments ---
 
 CURVE = ["curve", "case.toml"]
+COMPARE = ["compare", EXAMPLES / "pdms_measured.csv", EXAMPLES / "pdms_fit.toml"]
 OF_GROUPS = ["curve", "--groups", "0.1", "1e-3"]
 BAD_ARGUMENTS = [
     (["solve"], "CASE is missing; give a case file, or dimensionless groups with --groups"),
@@ -139,6 +140,7 @@ BAD_ARGUMENTS = [
     ([*CURVE, "-o", "new.xlsx"], "new.xlsx has the ending '.xlsx'; the name of this file must end in .nc, .csv, .zarr"),
     ([*CURVE, "--plot", "new.bmp"], "new.bmp has the ending '.bmp'; the name of this file must end in .png, .svg"),
     ([*CURVE, "-o", "new.nc", "-o", "./new.nc"], "new.nc is given twice as an output"),
+    ([*COMPARE, "--out", "new.xlsx"], "must end in .nc, .csv, .zarr, .parquet or .toml"),
     ([*CURVE, "-o"], "needs a value, but 0 given"),
 ]
 

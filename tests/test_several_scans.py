@@ -154,6 +154,7 @@ def test_what_cannot_be_combined_is_refused(subtests):
         ([place(0)], "1 surface"),
         ("scan.csv", "two or more"),
         ([place(0), place(0).topography], "two or more"),
+        ([place(0), place(1), place(0)], "place 0 and place 0 have the same heights"),
         ([place(0), line], "is a profile and place 0 a map"),
         ([place(0), other], "gamma is 0.4"),
     ):

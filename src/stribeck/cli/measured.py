@@ -159,10 +159,12 @@ def compare_command(
     as a case (.toml), which the other commands read.
     """
     from stribeck.experiments.compare import write_preferred_case
-    from stribeck.files.datasets import write_data
+    from stribeck.files.datasets import EXPORT_ENDINGS, write_data
 
     data, loaded = read_arguments("compare", files)
     as_case = out if out is not None and out.suffix.lower() == ENDING else None
+    if out is not None and out.suffix.lower() not in EXPORT_ENDINGS:
+        check_writable(out, (*EXPORT_ENDINGS, ENDING), force=outputs.force)
     outputs.check(as_case, data=[out] if out is not None and as_case is None else [])
     with interruptible() as progress:
         found = sb.compare(data, loaded, models=models, free=free, on_step=progress.of_fit)

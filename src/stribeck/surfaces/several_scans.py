@@ -161,7 +161,7 @@ def combine(surfaces: Sequence[Surface]) -> CombinedSurface:
     Raises
     ------
     InputError
-        Where there are fewer than two scans, lines and maps are mixed, gamma differs, or no spectrum fits.
+        Where there are fewer than two scans, one is given twice, lines and maps are mixed, gamma differs, or no spectrum fits.
 
     Notes
     -----
@@ -183,6 +183,15 @@ def combine(surfaces: Sequence[Surface]) -> CombinedSurface:
     if len(found) < 2 or not all(isinstance(each, Surface) for each in found):
         what = f"{len(found)} surface" if len(found) == 1 else show(surfaces)
         raise InputError(f"surfaces = {what}; give a list of two or more, each as of analyse(scan).")
+    heights: dict[bytes, Surface] = {}
+    for each in found:
+        key = each.topography.heights.tobytes()
+        if key in heights:
+            raise InputError(
+                f"{heights[key].source} and {each.source} have the same heights, which would count as two places; give each "
+                "scan once."
+            )
+        heights[key] = each
     kinds = {each.topography.is_line: each for each in found}
     if len(kinds) == 2:
         raise InputError(
