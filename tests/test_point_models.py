@@ -60,6 +60,14 @@ def test_a_curve_over_the_load_passes_through_layers_that_need_other_panels():
     assert curve.friction.total == pytest.approx(found, rel=1e-3)
 
 
+def test_the_panels_lie_at_the_edge_on_the_layer():
+    """The dry contact ends at 0.608 of the Hertz radius: with fine panels at that radius the equations were singular."""
+    groups = Groups(1e-5, 0.1, 1e-4 * 0.1 ** (2 / 3), geometry="point")
+    found = with_part("solid", Layer(0.2), groups, 1e-2)
+    within, outside = (found.field(0.0, y) for y in (0.59, 0.63))
+    assert within.fluid_pressure + within.contact_pressure > 0.2 > 0.01 > outside.fluid_pressure + outside.contact_pressure
+
+
 @pytest.mark.slow  # a sharp rim on a thin layer: seven seconds
 def test_a_lens_on_its_holder_is_solved_with_the_pressure_and_friction_that_the_page_of_balls_states():
     """The first mesh does not resolve the pressure at the rim: the equations on it had no regular solution."""

@@ -11,7 +11,15 @@ with S of :mod:`stribeck.solids.layer`: under a normal pressure the layer knows 
 part is the half-space, the second is smooth and integrated at the nodes.  K falls exponentially, so that
 :math:`k_s = -1/\xi` beyond 24 thicknesses.
 
-Source: the kernel by Hankel's transform; the plane-strain solution as in solids/layer.py.
+The pressure of a dry smooth ball up to its edge e follows from a function of the radius that is zero at the edge,
+
+.. math::
+
+    \varphi(t) + \frac2\pi \int_0^e \varphi(s) \int_0^\infty [S(q d) - 1] \cos q t \cos q s \, dq \, ds = c - t^2, \qquad
+    \int_0^e \varphi \, dt = \frac23
+
+Source: the kernel by Hankel's transform; the plane-strain solution as in solids/layer.py; the edge by Abel's
+transform of the deflection, as for a half-space.
 """
 
 from __future__ import annotations
@@ -28,6 +36,8 @@ import scipy
 from stribeck._types import Array
 from stribeck.numerics.cells import Cells
 from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.numerics.newton import root_between
+from stribeck.numerics.settings import HALF_DIGITS
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solids.half_space import deflection_by_mode
 from stribeck.solids.layer import KERNEL_RADIUS, MAX_WAVENUMBER, Layer, smooth_on_cells, transfer
@@ -39,6 +49,8 @@ MIN_LAYER_THICKNESS = 0.2  # Thinnest layer under a ball, in Hertz radii of a ha
 LOCAL_ABOVE = 6.0  # Half-width of a panel [thicknesses] above which its pressure acts at its own nodes only.
 
 ANGLES_PER_MODE = 4  # Points around a ring over the number of angular modes.
+
+EDGE_NODES, EDGE_WAVES = 20, 100  # Radii and wave numbers of the edge of a dry contact, good to 1e-13.
 
 
 @lru_cache(maxsize=16)
@@ -81,17 +93,39 @@ def layer_by_mode(mesh: PolarMesh, layer: Layer) -> Array:
     return found
 
 
+@lru_cache(maxsize=64)
+def layer_edge(layer: Layer) -> float:
+    """Return the radius of the contact of a dry smooth ball with a layer [a]."""
+    d = layer.layer_thickness
+    nodes, weights = np.polynomial.legendre.leggauss(EDGE_NODES)
+    x, of_wave = np.polynomial.legendre.leggauss(EDGE_WAVES)
+    x, of_wave = 0.5 * MAX_WAVENUMBER * (1 + x), 0.5 * MAX_WAVENUMBER * of_wave
+    of_wave *= 2 / np.pi / d * (transfer(x, layer.poisson_ratio) - 1)
+
+    def excess(edge: float) -> float:
+        t, of_t = 0.5 * edge * np.append(1 + nodes, 2.0), 0.5 * edge * weights
+        waves = np.cos(np.outer(t, x / d))
+        matrix = (waves * of_wave) @ waves[:-1].T * of_t
+        ones, parabola = np.linalg.solve(np.eye(EDGE_NODES) + matrix[:-1], np.array([np.ones(EDGE_NODES), -(t[:-1] ** 2)]).T).T
+        offset = (edge**2 + matrix[-1] @ parabola) / (1 - matrix[-1] @ ones)
+        return float(of_t @ (offset * ones + parabola)) - 2 / 3
+
+    found = root_between(excess, HALF_DIGITS, 1.0, HALF_DIGITS)
+    return 1.0 if found is None else found  # of a layer so thick that rounding alone tells it from a half-space
+
+
 @dataclass(frozen=True)
 class PlaneBody:
     """What meshes and equations of a ball ask of a kind of body."""
 
     deflection: Callable[[PolarMesh, Any], Array]
     widest_panel: Callable[[Any], float]  # Largest width of the panels near the contact for a solid [a]
+    edge: Callable[[Any], float]  # Radius of the contact of a dry smooth ball [a]
     reaches: float  # One if the deflection falls as 1/r far away, as that of a half-space; zero if it falls faster
 
 
 # Body on the plane by the kind of solid of the model; the half-plane becomes the half-space.
 BODIES: dict[type, PlaneBody] = {
-    HalfPlane: PlaneBody(lambda mesh, _: deflection_by_mode(mesh), lambda _: math.inf, 1.0),
-    Layer: PlaneBody(layer_by_mode, lambda layer: layer.layer_thickness, 0.0),
+    HalfPlane: PlaneBody(lambda mesh, _: deflection_by_mode(mesh), lambda _: math.inf, lambda _: 1.0, 1.0),
+    Layer: PlaneBody(layer_by_mode, lambda layer: layer.layer_thickness, layer_edge, 0.0),
 }

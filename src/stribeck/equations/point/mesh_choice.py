@@ -1,4 +1,4 @@
-r"""The panels for a state of the point contact: fine at the edge of the contact, coarser away from it, few far out.
+r"""The panels for a state of the point contact: fine at the edge of the dry contact, coarser away from it, few far out.
 
 The edge layer is as wide as :math:`\max(\lambda^{2/5}, \kappa^{2/3})`, as on the line; from there the panels grow to both
 sides, as the pressure goes as the square root of the distance.  Widths are rounded to powers of two, so that neighbours share
@@ -66,7 +66,9 @@ class Resolution:
     @property
     def mesh(self) -> PolarMesh:
         """The mesh."""
-        width, inner, outer = 0.5**self.halvings, [1.0], [1.0]
+        body = BODIES[type(self.model.solid)]
+        edge = 1.0 if self.doublings else body.edge(self.model.solid)
+        width, inner, outer = 0.5**self.halvings, [edge], [edge]
         w = width
         while inner[-1] - w > 0.3 * w:
             inner.append(inner[-1] - w)
@@ -78,7 +80,7 @@ class Resolution:
         near, far = np.concatenate([[0.0], inner[::-1], outer[1:]]), self._far
         scale = 2.0**self.doublings
         near = np.unique(np.concatenate([near * scale, [r for r in self.splits if 0.0 < r < 2.0 * scale]]))
-        widest = BODIES[type(self.model.solid)].widest_panel(self.model.solid)
+        widest = body.widest_panel(self.model.solid)
         while (wide := np.flatnonzero(np.diff(near) > widest)).size:
             near = np.sort(np.append(near, 0.5 * (near[wide] + near[wide + 1])))
         far = far * scale

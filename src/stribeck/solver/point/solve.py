@@ -120,7 +120,7 @@ def first_state(speed: float, law: ContactLaw, model: Model = BASE_MODEL) -> Lev
             better = split_where_poor(found, mesh, guess.fluid, law.pressure(guess.gap))
             if level.outcome.ok or better == found:
                 break
-            found = better  # under a thin layer the edge is sharper than that of the half-space
+            found = better  # the pressure on a thin layer is steeper than that on a half-space
         if level is None or not level.outcome.ok:
             level = _from_newtonian(speed, law, model) or level
     except MeshTooLargeError as problem:
