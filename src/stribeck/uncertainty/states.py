@@ -49,7 +49,7 @@ MIN_SHARE = 1e-290  # Value in place of a share that underflows
 
 SHARES = ("contact_load_share", "fluid_load_share")
 
-VISCOUS = 1  # Place of the viscous friction among the observables of a state
+VISCOUS, FLUID = 1, 2  # Places of viscous friction and the fluid's share among the observables of a state
 
 
 def films_of(geometry: Geometry) -> tuple[str, ...]:
@@ -58,7 +58,7 @@ def films_of(geometry: Geometry) -> tuple[str, ...]:
 
 
 class State(NamedTuple):
-    """Log odds of the load share (its logarithm where the fluid sucks), viscous friction and :attr:`SampledStates.logs`."""
+    """Logarithm of the asperities' share, viscous friction, the fluid's share and :attr:`SampledStates.logs`."""
 
     values: Array
     slopes: Array  # Derivatives by the logarithms of the uncertain inputs, shape (inputs, values)
@@ -85,18 +85,9 @@ class SampledStates:
         observable = self.contact.friction_of_asperities.observable
         return (*films_of(self.contact.groups.geometry), *(() if observable == SHARES[0] else (observable,)))
 
-    @cached_property
-    def sucks(self) -> bool:
-        """Whether the fluid carries less than nothing, so that the shares have no odds."""
-        return bool(self.neighbours.solution(self.contact.groups, self.contact).fluid_load_share < -self.rtol)
-
     def log_slopes(self, name: str, state: State) -> Array:
         """Return the derivatives of the logarithm of the asperities' share, or of what is read as one, by the inputs."""
-        if name == SHARES[0] and self.sucks:
-            return state.slopes[:, 0]
-        if name == SHARES[0]:
-            return np.asarray(state.slopes[:, 0] / (1 + math.exp(min(state.values[0], 700.0))))
-        return np.asarray(state.slopes[:, VISCOUS + 1 + self.logs.index(name)])
+        return np.asarray(state.slopes[:, 0 if name == SHARES[0] else FLUID + 1 + self.logs.index(name)])
 
     def off_atlas(self, offsets: Array) -> dict[str, Array] | None:
         """Return states at logarithms of the inputs off the atlas, None if it does not have them all."""
@@ -130,7 +121,7 @@ class SampledStates:
             values, slopes = self.at(place @ units)
             return State(values, units @ slopes)
 
-        return _sampled_until_confirmed(places, solved, friction, self.logs, self.sucks)
+        return _sampled_until_confirmed(places, solved, friction, self.logs)
 
     def _directions(self, sigmas: Array) -> Array:
         """Return the combinations of standard normal inputs that move the state, as orthonormal rows."""
@@ -171,8 +162,8 @@ class SampledStates:
         for i, (_, (below, above, width)) in enumerate(changed, 3):
             ends = [float(viscous_of(parts, groups.speed, groups.load, each)) for each in (below, above)]
             through[i] = (ends[1] - ends[0]) / width
-        share = _log(by[SHARES[0]]) - (0.0 if self.sucks else _log(by[SHARES[1]]))
-        found = [share, Dual(viscous.value, viscous.slope + through) / inputs["beta"], *(_log(by[name]) for name in self.logs)]
+        drag = Dual(viscous.value, viscous.slope + through) / inputs["beta"]
+        found = [_log(by[SHARES[0]]), drag, by[SHARES[1]], *(_log(by[name]) for name in self.logs)]
         slopes = np.array([each.slope for each in found]).T
         by_inputs = self.of_groups @ slopes[:3]
         for row, (k, _) in zip(slopes[3:], changed, strict=True):
@@ -186,7 +177,7 @@ class SampledStates:
             contact = self._moved(logs)
             state = self.neighbours.solution(contact.groups, contact)
             films = [max(float(getattr(state, name)), MIN_SHARE) for name in self.logs]
-            return np.array([-math.log(MIN_SHARE), 0.0, *np.log(films)])
+            return np.array([0.0, 0.0, MIN_SHARE, *np.log(films)])
 
         steps = LOG_STEP * np.eye(len(logs))
         return State(values(logs), np.array([(values(logs + step) - values(logs - step)) / (2 * LOG_STEP) for step in steps]))
@@ -201,22 +192,18 @@ class SampledStates:
 
 
 def _sampled_until_confirmed(
-    places: Array,
-    solved: Callable[[Array], State],
-    friction: Callable[[dict[str, Array]], Array],
-    logs: Sequence[str],
-    sucks: bool,
+    places: Array, solved: Callable[[Array], State], friction: Callable[[dict[str, Array]], Array], logs: Sequence[str]
 ) -> tuple[dict[str, Array], tuple[str, ...]]:
     """Return samples that are read between states, as many as confirm the ends of the interval of friction, and notes."""
     # Each round solves samples at both ends and some anywhere, as many each as fix a plane over the inputs, compares them with
     # what was read there, and reads anew.
     middle = np.zeros(places.shape[1])
     start, some = solved(middle), len(middle) + 1
-    lengths = _lengths(start, sucks)
+    lengths = _lengths(start)
     known, random = [(middle, start)], np.random.default_rng(SEED)
     tried = np.zeros(len(places), dtype=bool)
     while True:
-        found = _read(known, places, lengths, logs, sucks)
+        found = _read(known, places, lengths, logs)
         predicted = friction(found)
         if not len(middle):
             return found, ()
@@ -233,46 +220,51 @@ def _sampled_until_confirmed(
                     new[i] = solved(places[i])
             exact = {name: values.copy() for name, values in found.items()}
             for i, state in new.items():
-                for name, values in _by_name(state.values[None], 0.0, logs, sucks).items():
+                for name, values in _by_name(state.values[None], 0.0, logs).items():
                     exact[name][i] = values[0]
             differences = np.abs(friction(exact) - predicted)[list(new)]
             wrong = max(wrong, differences.max(initial=0.0 if new else math.inf))
             known += [(places[i], state) for i, state in new.items()]
         if wrong <= INTERVAL_END_RTOL * width or tried.sum() + 3 * some > MAX_SOLVED_SAMPLES:
-            found = _read(known, places, lengths, logs, sucks)
+            found = _read(known, places, lengths, logs)
             return found, _interval_notes(wrong / width if width else 0.0, int(tried.sum()), len(known) - 1)
 
 
-def _lengths(state: State, sucks: bool) -> Array:
+def _lengths(state: State) -> Array:
     """Return how far inputs move until a state changes by its own size, at most one."""
     size = np.ones_like(state.values)
-    if not sucks:
-        size[0] = 4 * math.cosh(state.values[0] / 2) ** 2  # of log odds over that of the share
+    size[0] = math.inf  # the share of the fluid tells it
     size[VISCOUS] = abs(state.values[VISCOUS]) or 1.0
     return lengths_of(state.slopes / size)
 
 
-def _read(
-    known: Sequence[tuple[Array, State]], places: Array, lengths: Array, logs: Sequence[str], sucks: bool
-) -> dict[str, Array]:
+def _read(known: Sequence[tuple[Array, State]], places: Array, lengths: Array, logs: Sequence[str]) -> dict[str, Array]:
     """Return states at places, read between known ones."""
     signs = {float(np.sign(state.values[VISCOUS])) for _, state in known}
     sign = signs.pop() if len(signs) == 1 else 0.0  # a drag that changes its sign has no logarithm
+    have_odds = all(state.values[FLUID] > 0 for _, state in known)  # shares have none where the fluid sucks
     scattered = Scattered(lengths)
     for place, (values, slopes) in known:
         y, by = values.copy(), slopes.copy()
         if sign:
             y[VISCOUS] = math.log(abs(values[VISCOUS]))
             by[:, VISCOUS] /= values[VISCOUS]
+        if have_odds:
+            fluid = _log(Dual(values[FLUID], slopes[:, FLUID]))
+            y[0] -= fluid.value
+            by[:, 0] -= fluid.slope
         scattered.add(place, y, by)
-    return _by_name(scattered.values(places), sign, logs, sucks)
+    found = scattered.values(places)
+    if have_odds:
+        found[:, 0] = -np.logaddexp(0.0, -found[:, 0])
+    return _by_name(found, sign, logs)
 
 
-def _by_name(y: Array, sign: float, logs: Sequence[str], sucks: bool) -> dict[str, Array]:
+def _by_name(y: Array, sign: float, logs: Sequence[str]) -> dict[str, Array]:
     """Return load share, viscous friction and what is read as logarithms."""
-    share, viscous, *films = y.T
+    share, viscous, _, *films = y.T
     return {
-        "contact_load_share": np.exp(share) if sucks else 1 / (1 + np.exp(-np.clip(share, -700, 700))),
+        "contact_load_share": np.exp(share),
         "viscous": sign * np.exp(viscous) if sign else viscous,
         **{name: np.exp(film) for name, film in zip(logs, films, strict=True)},
     }
