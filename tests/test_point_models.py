@@ -99,6 +99,13 @@ def test_a_ball_says_where_its_film_leaves_the_range_of_a_law(subtests):
             assert [said in note for note in notes if note.startswith("The fluid leaves the range of its laws")] == [True]
 
 
+@pytest.mark.quick
+def test_a_film_that_reforms_names_the_tolerance_that_it_holds():
+    found = sb.solve(MIXED, rtol=1e-3, cavitation="reform", cavity_pressure=-0.05)
+    assert found.rtol == 2e-3
+    assert "holds rtol = 0.002 at best" in found.notes[-1]
+
+
 def test_contacts_hold_fluid_and_cavitation_and_friction_names_the_wake():
     ball = sb.PointContact(
         radius="10 mm", modulus="2 MPa", load="10 mN", viscosity="0.1 Pa*s", entrainment_speed="0.1 m/s", slide_to_roll=1.0,
@@ -109,6 +116,7 @@ def test_contacts_hold_fluid_and_cavitation_and_friction_names_the_wake():
     solution = sb.solve(ball, rtol=1e-3)
     assert solution.fluid_pressure.min() >= 0.0
     assert any("streaks of liquid" in note for note in solution.notes)
+    assert not any("at best" in note for note in solution.notes)
     friction = solution.friction()
     assert friction.error < 0.01 * friction
     assert ball.replace(cavitation="none", fluid="newtonian").groups.model.film.is_plain

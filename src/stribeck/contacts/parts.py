@@ -94,8 +94,8 @@ class Parts:
             object.__setattr__(self, name, value)
         if self.cavity_pressure < 0 and self.cavitation != "reform":
             raise InputError(
-                f"cavity_pressure = {show(cavity_pressure)} needs cavitation = 'reform': a film that ends at the exit does so "
-                "at the ambient pressure."
+                f"cavity_pressure = {show(cavity_pressure)} needs cavitation = 'reform': a full film has no cavity, and one "
+                "that ends at the exit does so at the ambient pressure. Give cavitation = 'reform', or cavity_pressure = 0."
             )
 
     def part_values(self) -> dict[str, Any]:

@@ -30,6 +30,8 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, real_array, show
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.fields import Field, Profile
+from stribeck.solver.point.level import PROBLEMS
+from stribeck.solver.point.solve import effective_model
 from stribeck.solver.point.state import PointObservables, PointState
 from stribeck.solver.solve_error import SolveError, describe
 
@@ -67,7 +69,7 @@ class PointSolution(BaseSolution):
     notes : tuple of str
         What to know before using the numbers, one sentence each.
     rtol : float
-        The relative tolerance asked for.
+        The relative tolerance asked for, or the smallest that a film that breaks can hold.
     law : str
         Name of the contact law.
     observables : PointObservables
@@ -332,6 +334,9 @@ def _notes(state: PointState, contact: Contact | None, values: PointObservables)
             notes.append(WAKE_NOTE)
         elif state.lowest_pressure <= model.cavity_pressure:
             notes.append(CAVITY_NOTE)
+        finest = PROBLEMS[effective_model(model).cavitation][0].finest
+        if state.rtol == finest:
+            notes.append(f"Under a ball such a film holds rtol = {finest:g} at best: a smaller one counts as that.")
     elif contact is not None and groups.speed > 0:
         notes += cavitation_notes(
             contact,
