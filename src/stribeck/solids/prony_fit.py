@@ -252,6 +252,7 @@ def from_master_curve(path: str | os.PathLike[str], *, poisson_ratio: float = 0.
     """
     # Slow to import, and most solids have no file
     from stribeck.files.columns import Column, is_called_or_signed, read_columns
+    from stribeck.files.table_reading import STEP_HEADER
 
     advice = (
         "name the columns 'frequency [Hz]', E' [MPa] and E'' [MPa] of tension or G' [MPa] and G'' [MPa] of shear, or "
@@ -271,6 +272,10 @@ def from_master_curve(path: str | os.PathLike[str], *, poisson_ratio: float = 0.
     if PER_SECOND & columns.units["frequency"]:
         notes += ("Frequency in 1/s was taken for the angular one, in rad/s; write Hz where it counts cycles.",)
     if not is_called_or_signed(columns.headers["frequency"], REDUCED):
+        if STEP_HEADER in columns.table.header:
+            notes += (
+                "All tables count as measured at one temperature: of several temperatures keep one, or shift them to it.",
+            )
         for header in Column(TEMPERATURE, "number").names_in(columns.table):
             low, high = (float(end(columns.table.values(header), initial=np.nan)) for end in (np.fmin.reduce, np.fmax.reduce))
             if high - low > ONE_TEMPERATURE:
