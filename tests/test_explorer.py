@@ -613,6 +613,14 @@ def test_what_is_outside_the_model_stands_above_every_number(rested):
     assert parts_of(rested)["answer"]["headline"] == sb.check(START.contact).headline
 
 
+def test_the_verdict_of_the_page_is_that_of_the_check_where_the_curve_leaves_the_range_of_the_law():
+    shown = START.replace(boundary_friction=0.001)
+    answer = Answerer()(shown)
+    assert answer.curve.doubtful.any()
+    said = {each.name: each.verdict for each in sb.check(shown.contact)}
+    assert {each.name: each.verdict for each in answer.checks}.items() <= said.items()
+
+
 def test_slow_work_of_a_page_ends_between_its_steps():
     ball = sb.load_case(EXAMPLES / "rubber_ball.toml").contact
     began, pool, ended = time.monotonic(), Threads(), []
