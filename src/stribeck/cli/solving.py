@@ -67,18 +67,13 @@ def solve_command(
     written, problems = outputs.write(solution, loaded.title if loaded else "")
     from stribeck.checks.table import checks_of_solution
     from stribeck.cli import reports
-    from stribeck.solver.base_solution import regime_of_state
 
     checks = checks_of_solution(solution, loaded.facts, loaded.definition) if loaded else None
     said = solution, loaded, mu, b, checks, verbose
 
     def content() -> dict[str, Any]:
-        found: dict[str, Any] = solution.to_dict(mu, b)
-        if loaded:
-            definition = loaded.definition
-            found |= {"definition": definition, "regime": regime_of_state(solution, definition)}
-            found["notes"] = list(solution.notes_for(definition=definition))
-        return found
+        own: dict[str, Any] = {"definition": loaded.definition} if loaded else {}
+        return {**solution.to_dict(mu, b, **own), **own}
 
     answer(outputs.json, content, lambda: reports.solution_lines(*said), checks, loaded, written)
     return complain("\n".join(problems), EXIT_BAD_INPUT if problems else 0)

@@ -23,7 +23,6 @@ from stribeck.quantities.units import InputError
 from stribeck.regimes.advice import strongest_lever
 from stribeck.regimes.margin_intervals import with_intervals
 from stribeck.regimes.margins import RegimeMargins, regime_margins, scanned_rtol
-from stribeck.solver.base_solution import regime_of_state
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve_error import SolveError
 from stribeck.uncertainty.propagate import Band, friction_band, propagate
@@ -63,9 +62,8 @@ class Overview:
     def to_dict(self) -> dict[str, Any]:
         """Return the state with the transitions around it and what moves its friction, ready for JSON."""
         return {
-            **self.solution.to_dict(),
+            **self.solution.to_dict(definition=self.curve.definition),
             "definition": self.curve.definition,
-            "regime": regime_of_state(self.solution, self.curve.definition),
             "contact_friction_share": self.friction.contact_share,
             "contact_friction_share_error": self.friction.relative_error,
             **marks_of(self.curve),

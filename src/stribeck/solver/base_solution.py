@@ -301,14 +301,18 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
         outcome = "" if self.outcome.ok else f"; {self.outcome.value}"
         return Card(f"{self.regime} lubrication{outcome}", rows, self.notes)
 
-    def _columns(self, boundary_friction: float | None = None, beta: float | None = None) -> dict[str, Column]:
+    def _columns(
+        self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition = "balanced"
+    ) -> dict[str, Column]:
         """Return regime and numbers, each with its error, as columns of a dataset."""
-        regime = regime_of(self.fluid_load_share, self._friction(boundary_friction, beta).contact_share)
+        regime = regime_of(self.fluid_load_share, self._friction(boundary_friction, beta, definition).contact_share)
         regimes: dict[str, Column] = {"regime": ((), regime, *COLUMNS["regime"])}
         return regimes | number_columns(numbers_of(self, boundary_friction, beta))
 
     @answers_typos
-    def to_dict(self, boundary_friction: float | None = None, beta: float | None = None) -> dict[str, Any]:
+    def to_dict(
+        self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition = "balanced"
+    ) -> dict[str, Any]:
         """Return inputs, the numbers of :meth:`to_dataset` with their errors and units, and the outcome, ready for JSON.
 
         The error of a number has its name and ``_error``, and its unit; that of a gap in Hertz units is relative.
@@ -317,13 +321,15 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
         ----------
         boundary_friction, beta : float, optional
             As in :meth:`friction`.
+        definition : {"balanced", "published"}
+            Which friction the regime and the notes go by; the numbers are those of both.
 
         Returns
         -------
         dict
             Numbers, text, lists and dictionaries of these; nan or infinity where a quantity does not exist.
         """
-        columns = self._columns(boundary_friction, beta)
+        columns = self._columns(boundary_friction, beta, definition)
         found = about_problem(self.groups, self.contact)
         units = {name: unit for name, (_, _, unit, _) in columns.items() if name != "regime" and not name.endswith("_error")}
         return found | {
@@ -334,7 +340,7 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
             "nodes": self.nodes,
             "outcome": self.outcome.name,
             "message": self.outcome.value,
-            "notes": list(self.notes_for(boundary_friction, beta)),
+            "notes": list(self.notes_for(boundary_friction, beta, definition)),
         }
 
     def _with_numbers(self, fields: xarray.Dataset) -> xarray.Dataset:
