@@ -306,8 +306,8 @@ def position_error(mesh: Mesh, gap: Array, changes: Array, position: float, dept
 def _farthest_rival(mesh: Mesh, gap: Array, position: float, panel: int, depth: float) -> float:
     """Return the distance of the farthest other minimum that may be the deeper one, zero if there is none."""
     x, gap = mesh.nodes[: -mesh.order], gap[: -mesh.order]  # without the panel through infinity
-    apart = np.append(True, np.diff(x) > 0)  # rounding may make two nodes of the narrowest panels one
-    panels, x, gap = (np.arange(len(x)) // mesh.order)[apart], x[apart], gap[apart]
+    places = np.flatnonzero(np.append(True, np.diff(x) > 0))  # rounding may make two nodes of the narrowest panels one
+    panels, x, gap = places // mesh.order, x[places], gap[places]
     left, middle, right = gap[:-2], gap[1:-1], gap[2:]
     rising = (middle - left) / (x[1:-1] - x[:-2])
     falling = (right - middle) / (x[2:] - x[1:-1])

@@ -60,7 +60,7 @@ class Capacitance:
     nodes: Indices = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     answers: list[Single] = field(default_factory=list)
     """Z: changes of total pressure by mode and of the offset, shape (size + 1, nodes), a few nodes at a time."""
-    pressed: Single = field(default_factory=lambda: np.zeros((2, 0, 0), dtype=np.float32))
+    responses: Single = field(default_factory=lambda: np.zeros((2, 0, 0), dtype=np.float32))
     """Total pressure and gap of Z at the kept nodes, shape (2, nodes, nodes)."""
     linear: CavitatedLinear | None = None
     """The Jacobian that it is about the inverse of."""
@@ -76,12 +76,12 @@ class Capacitance:
         self.nodes = np.append(self.nodes, new)
         # A ring of nodes at a time: their arrays stay in the cache.
         self.answers += [self._answers(linear, new[at : at + self.mesh.rings]) for at in range(0, new.size, self.mesh.rings)]
-        kept, self.pressed = self.pressed, np.empty((2, self.nodes.size, self.nodes.size), dtype=np.float32)
-        self.pressed[:, :old, :old] = kept
+        kept, self.responses = self.responses, np.empty((2, self.nodes.size, self.nodes.size), dtype=np.float32)
+        self.responses[:, :old, :old] = kept
         deflection, column = linear.equations.operators.deflection.astype(np.float32), 0
         for each in self.answers:
             first, columns = (old if column < old else 0), slice(column, column := column + each.shape[1])
-            self.pressed[:, first:, columns] = self._at(self.nodes[first:], each, deflection)
+            self.responses[:, first:, columns] = self._at(self.nodes[first:], each, deflection)
 
     def _answers(self, linear: CavitatedLinear, new: Indices) -> Single:
         """Return the responses to unit residuals at some nodes."""
@@ -109,7 +109,7 @@ class Capacitance:
 
     def block(self, linear: CavitatedLinear, among: Indices) -> Array:
         """Return C Z, the film pressures of cavitated nodes under unit residuals; these are places among the kept nodes."""
-        total, gap = self.pressed
+        total, gap = self.responses
         found, slope = total[np.ix_(among, among)], linear.contact_slope.ravel()[self.nodes[among]]
         touching = np.flatnonzero(slope)
         found[touching] -= slope[touching, None].astype(np.float32) * gap[np.ix_(among[touching], among)]
