@@ -274,7 +274,7 @@ def from_master_curve(path: str | os.PathLike[str], *, poisson_ratio: float = 0.
     if not is_called_or_signed(columns.headers["frequency"], REDUCED):
         if STEP_HEADER in columns.table.header:
             notes += (
-                "All tables count as measured at one temperature: of several temperatures keep one, or shift them to it.",
+                "All tables count as measured at one temperature; keep the table of one temperature, or shift the others.",
             )
         for header in Column(TEMPERATURE, "number").names_in(columns.table):
             low, high = (float(end(columns.table.values(header), initial=np.nan)) for end in (np.fmin.reduce, np.fmax.reduce))
