@@ -74,6 +74,20 @@ def test_a_zero_of_the_force_that_is_off_is_found_with_the_inputs(case, tmp_path
     assert found["boundary_friction"].interval_95 == pytest.approx(plain.interval_95, rel=0.02)
 
 
+def test_positions_count_from_either_end_however_far_the_zero_of_the_force_is_off(case, tmp_path):
+    path = loop_of(tmp_path / "loop.csv", sb.load_case(case).contact.replace(boundary_friction=0.5))
+    rows = np.loadtxt(path, delimiter=",", skiprows=1)
+    assert np.any(rows[:, 1] * (rows[:, 1] + 0.06) < -1e-4)  # fast rows of the way back seem to be of the way out
+    path.write_text("position [mm],friction\n" + "".join(f"{25 - x:.7g},{y + 0.06:.7g}\n" for x, y in rows))
+    found = sb.bench.fit_loop(path, case, free=["boundary_friction"])
+    low, high = found["boundary_friction"].interval_95
+    assert low < 0.5 < high < 1.6 * low and found.noise < 4 * NOISE
+    (zero,) = (float(each) for note in found.notes for each in re.findall(r"force is off by ([0-9.]+) ±", note))
+    assert zero == pytest.approx(0.06, abs=2e-3)
+    assert any("counted from the other end" in note for note in found.notes)
+    assert not any("the other way" in note for note in found.notes)
+
+
 def test_a_loop_that_does_not_determine_its_inputs_says_so(capsys, case, tmp_path):
     path = loop_of(tmp_path / "loop.csv", sb.load_case(case).contact, "time")
     head, *rows = path.read_text().splitlines()

@@ -74,6 +74,7 @@ def read_loop(path: PathLike) -> Loop:
 
 
 SLOW = 0.1  # Speed over the largest below which a row is left out: at a reversal the rig gives way before the surfaces slide
+SIDE_BY_SIDE = 10  # Rows at about one position, among which are some of both ways
 SAME_LENGTH = 0.05  # Part by which the measured path may be longer or shorter than the motion
 STEP = 0.01  # Change of the logarithm of an input for its derivative; with less, the mesh of a stroke makes noise of it
 STEPS = 120  # Steps of a cycle, unless the case says otherwise
@@ -161,7 +162,8 @@ def fit_loop(
     ----------
     data : str or path-like or Loop
         A file with a column ``position [mm]`` or ``time [s]`` and one ``friction``, the coefficient with the sign of the force
-        against the motion, so below zero on the way back.  Positions count from any place; time counts as that of the motion.
+        against the motion, so below zero on the way back.  Positions count from any place, either way, in the order in which
+        they were passed; time counts as that of the motion.
     case : str or path-like or Case or LineContact
         What is known of the contact, and where the fit begins; a case has the motion in its table ``[stroke]``.
     motion : Motion, optional
@@ -214,6 +216,13 @@ def fit_loop(
     return _result(model, found if said else settle(goal, found.theta), said)
 
 
+def _middle(loop: Loop) -> float:
+    """Return the friction about which a loop lies, which is the zero of the force, however far that is off."""
+    rows = loop.friction[np.argsort(loop.values)]
+    ends = [(each.min(), each.max()) for each in np.array_split(rows, max(len(rows) // SIDE_BY_SIDE, 1))]
+    return float(np.median(np.mean(ends, axis=1)))
+
+
 def _problem(case: PathLike | Case | LineContact, given: dict[str, Any]) -> tuple[LineContact, FitSettings, dict[str, Any]]:
     """Return contact, settings of the fit, and arguments of the stroke."""
     settings = None
@@ -248,6 +257,7 @@ class _LoopModel:
         self.motion, self.steps = arguments["motion"], arguments["steps"]
         self.rubs = np.array([each.name == contact.friction_of_asperities.size for each in free])
         self.strokes = 0
+        self.is_mirrored = False  # Whether positions fall where friction is above zero
         self.zero_is_free = True  # Whether the zero of the force is fitted with the inputs
         self._known: dict[bytes, tuple[Array, Array, Array, Array]] = {}
         self.phase, sliding = self._phases(loop)
@@ -268,10 +278,13 @@ class _LoopModel:
                     f"{loop.path}: positions span {measured:.4g} m and the motion {length:.4g} m; they must be those of one "
                     "stroke. Check the unit of the column, and [stroke]."
                 )
-            place = loop.values - loop.values.min() - 0.5 * (measured - length) + path.min()
-            phase = np.empty(len(loop))
+            phase, above = np.empty(len(loop)), loop.friction - _middle(loop)
+            # In the order of the file; of rows in the order of positions it is a stroke, either way.
+            self.is_mirrored = bool(np.diff(loop.values) @ np.sign(above[1:]) < -1.5 * measured)
+            values = -loop.values if self.is_mirrored else loop.values
+            place = values - values.min() - 0.5 * (measured - length) + path.min()
             for sign in (1.0, -1.0):
-                own, rows = sign * speed > 0, sign * loop.friction > 0
+                own, rows = sign * speed > 0, sign * above >= 0
                 order = np.argsort(path[own])
                 phase[rows] = np.interp(place[rows], path[own][order], time[own][order])
         return phase, np.abs(self.motion.speed(phase)) >= SLOW * np.abs(speed).max()
@@ -374,8 +387,10 @@ def _result(model: _LoopModel, at: Minimum, zero: str) -> LoopFit:
     notes = [*notes_of_inputs(inputs), *model.data.notes, *filter(None, [zero])]
     if model.left_out:
         notes.append(f"{model.left_out} rows slower than a tenth of the largest speed left out.")
+    if model.is_mirrored:
+        notes.append("Positions fall where friction is above zero: they were counted from the other end.")
     against = int((model.motion.speed(model.phase) * model.data.friction < 0).sum())
-    if against:
+    if against and model.data.over == "time":
         notes.append(f"In {against} of {n} rows friction has the sign of the other way: does time begin with the motion?")
     if np.any(np.abs(moved) > scatter):
         notes.append("Half of the time steps move the inputs by more than the noise does: ask for more steps.")
