@@ -24,6 +24,7 @@ from stribeck.surfaces import (
     power_spectrum,
     synthetic_topography,
 )
+from stribeck.surfaces.measured_spectrum import line_density
 
 STEP = 1e-6
 FUNDAMENTAL = 2 * math.pi / 128e-6
@@ -60,6 +61,14 @@ def test_one_wave_has_all_its_power_in_its_ring():
     cell = (2 * math.pi / 256e-6) ** 2
     assert spectrum.density[ring] * 2 * spectrum.modes[ring] * cell == pytest.approx(0.5e-14, rel=1e-9, abs=0)
     assert spectrum.mean_square == pytest.approx(0.5e-14, rel=1e-12, abs=0)
+
+
+def test_the_spectrum_along_a_line_is_the_integral_across_it():
+    surface = SelfAffine(1e-6, 1e4, 1e13, 0.2, 3e4)
+    k = np.geomspace(1e-2, 1e12, 400_001)
+    for q in (3e3, 2e4, 1e5):
+        across = np.trapezoid(k * surface.spectrum.at(np.hypot(q, k)), np.log(k))
+        assert line_density(np.array(q), surface) == pytest.approx(2 * across, rel=1e-5, abs=0)
 
 
 def test_reliable_wavelengths_end_at_the_scan_and_at_the_instrument():

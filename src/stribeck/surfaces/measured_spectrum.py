@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
+from scipy import special
 
 from stribeck._types import Array, Flags
 from stribeck.contact_laws.spectrum import SelfAffine, positive
@@ -14,7 +15,7 @@ from stribeck.quantities.results import Shown
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.surfaces.topography import Topography
 
-__all__ = ["MeasuredSpectrum", "Window", "line_density", "power_spectrum"]
+__all__ = ["MeasuredSpectrum", "Window", "line_density", "line_shape", "power_spectrum"]
 
 Window = Literal["hann", "none"]
 
@@ -26,8 +27,6 @@ MAX_RINGS_PER_DECADE = 24  # Most rings in a decade of wave numbers
 
 # Wave numbers that stand for those within a ring of a map when a model is averaged over it; along a line 2 do
 WAVES_PER_RING = 8
-
-LOG_INTEGRAL_END = 14.0  # Upper end of the integral along a line; the rest is below exp(-14 (1 + 2 H)) of it
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -161,31 +160,24 @@ def power_spectrum(
 
 
 def line_density(wavenumber: Array, roughness: SelfAffine) -> Array:
-    r"""Return the spectrum along a line of a self-affine surface without a short cut-off.
+    """Return the spectrum along a line of a self-affine surface without a short cut-off."""
+    shape = line_shape(wavenumber, roughness.q0, roughness.roll_off or roughness.q0, roughness.hurst)
+    return float(roughness.spectrum.density[0]) * shape
 
-    .. math:: C_1(q) = 2 \int_0^\infty C(q \cosh v)\, q \cosh v\, \mathrm{d}v
+
+def line_shape(wavenumber: Array, q0: float, q_r: float, H: float) -> Array:
+    r"""Return the spectrum along a line over that of the plateau of the surface, with B the incomplete beta function.
+
+    .. math::
+
+        \frac{C_1(q)}{C(q_0)} = 2 \int_0^\infty \frac{C(q \cosh v)}{C(q_0)}\, q \cosh v\, \mathrm{d}v
+        = 2 \max(q_r^2 - q^2, 0)^{1/2} - 2 \max(q_0^2 - q^2, 0)^{1/2}
+        + q \left(\frac{q}{q_r}\right)^{-2 (1 + H)} B_{\min(q^2/q_r^2, 1)}\left(H + \tfrac12, \tfrac12\right)
     """
-    k = np.asarray(wavenumber, dtype=float)
-    q_r, q0, H = roughness.roll_off or roughness.q0, roughness.q0, roughness.hurst
-    level = float(roughness.spectrum.density[0])
-    # Beyond the roll-off the integral of a power law is a closed form.
-    falling = level * (np.maximum(k, q_r) / q_r) ** (-2 * (1 + H)) * k
-    result = falling * math.sqrt(math.pi) * math.gamma(H + 0.5) / math.gamma(H + 1)
-    flat = k < q_r
-    if not flat.any():
-        return np.asarray(result)
-    t, w = np.polynomial.legendre.leggauss(16)
-    q = k[flat][:, None]
-    corner = np.arccosh(q_r / q)
-    # The plateau from q_0 to q_r, and the power law from there on.
-    total = q_r * np.tanh(corner) - q0 * np.tanh(np.arccosh(np.maximum(q0 / q, 1.0)))
-    for low, high in ((0.0, 1.0), (1.0, 3.0), (3.0, LOG_INTEGRAL_END)):
-        v = corner + low + 0.5 * (high - low) * (t + 1)
-        inner = q * np.cosh(v)
-        total = total + 0.5 * (high - low) * np.sum(w * (inner / q_r) ** (-2 * (1 + H)) * inner, axis=-1, keepdims=True)
-    result = np.asarray(result)
-    result[flat] = 2 * level * total[:, 0]
-    return result
+    q = np.asarray(wavenumber, dtype=float)
+    plateau = np.sqrt(np.maximum(q_r**2 - q**2, 0.0)) - np.sqrt(np.maximum(q0**2 - q**2, 0.0))
+    beyond = special.beta(H + 0.5, 0.5) * special.betainc(H + 0.5, 0.5, np.minimum(q / q_r, 1.0) ** 2)
+    return np.asarray(2 * plateau + q * (q / q_r) ** (-2 * (1 + H)) * beyond)
 
 
 def _window(window: str, shape: tuple[int, ...]) -> Array:

@@ -18,7 +18,7 @@ from stribeck.contact_laws.persson import GAMMA, exponential_limit
 from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.quantities.docstrings import Described
 from stribeck.quantities.units import InputError, checked_kind
-from stribeck.surfaces.measured_spectrum import MIN_WAVES_IN_SCAN, MeasuredSpectrum, line_density
+from stribeck.surfaces.measured_spectrum import MIN_WAVES_IN_SCAN, MeasuredSpectrum, line_density, line_shape
 
 __all__ = ["Estimate", "FitParameters", "SelfAffineFit", "central_differences", "fit_self_affine"]
 
@@ -393,8 +393,8 @@ def _model(theta: Array, data: MeasuredSpectrum, centre: float, longest: float, 
     H = float(theta[1])
     if data.is_line:
         q_r = math.exp(theta[2]) if roll_off else longest
-        unit = SelfAffine(1.0, longest, 1e9 * longest, H, max(q_r, longest))
-        shape = line_density(data.inner, unit) / float(line_density(np.array(math.exp(centre)), unit))
+        ends = longest, max(q_r, longest), H
+        shape = line_shape(data.inner, *ends) / line_shape(np.array(math.exp(centre)), *ends)
     else:
         corner = theta[2] if roll_off else -np.inf
         x = np.maximum(np.log(data.inner), corner)
