@@ -278,6 +278,14 @@ def test_viscosity_has_no_margin_where_speed_does_not_stand_for_it(subtests):
             assert any("Viscosity has no margins" in note for note in found.notes)
 
 
+def test_load_has_no_margin_where_the_contact_grows_in_its_own_way():
+    """That of a lip had followed the series of a parabola, to where asperities cause 14 % of the friction, not 10 %."""
+    lip = CONTACT.replace(profile=sb.profiles.Lip(0.35, 0.7, "50 um"), cavitation="exit")
+    found = regime_margins(lip, rtol=1e-2)
+    assert [margin.name for margin in found.margins] == ["speed", "roughness", "viscosity"]
+    assert any("Load has no margins" in note for note in found.notes)
+
+
 def test_a_margin_of_the_roughness_of_a_spectrum_says_that_it_keeps_beta(mixed):
     law = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=4e4, q1=4e6, hurst=0.8))
     found = regime_margins(CONTACT.replace(law=law, **law.coefficients), rtol=1e-2)

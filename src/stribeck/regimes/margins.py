@@ -328,7 +328,7 @@ class RegimeMargins(Tabled):
     """A contact's regime and the way to its neighbours; its dataset has the changes of regime along ``crossing``."""
 
     regime: Regime  # The present one
-    margins: tuple[Margin, ...]  # For speed, load, roughness and viscosity; the last not where speed does not stand for it
+    margins: tuple[Margin, ...]  # For speed, load, roughness and viscosity, as far as each has them
     notes: tuple[str, ...]  # Why an input leads nowhere, and whether the contact stands at a threshold
     geometry: Geometry = "line"
     counted: str = ""  # Which errors the intervals count and which inputs count as exact; empty without intervals
@@ -409,7 +409,11 @@ def regime_margins(
             "Margin and slope of the roughness keep beta, as if wavelengths grew with the height; levers of a report and "
             "propagated errors let beta follow."
         )
-    found = [scan.along(name) for name in SCANNED]
+    scanned = SCANNED
+    if contact.profile is not None:
+        notes.append("Load has no margins: the contact of this profile grows with the load in its own way.")
+        scanned = tuple(name for name in SCANNED if name != "load")
+    found = [scan.along(name) for name in scanned]
     if contact.friction_of_asperities.uses_speed:
         notes.append("Viscosity has no margins: the stress of the asperities follows the speed, which does not stand for it.")
     elif contact.replace(viscosity=2 * contact.viscosity, speed=contact.speed / 2).groups.model == contact.groups.model:
