@@ -30,7 +30,7 @@ def animation(found):
 
     last = found.last_cycle
     time, place = found.time[last] - found.time[last][0], 1e3 * found.position[last]
-    friction, film = found.friction[last], 1e6 * found.central_gap[last]
+    friction, film = found.friction[last], 1e6 * found.central_film_thickness[last]
     figure, (loop, over_time) = plt.subplots(1, 2, figsize=(8, 3.4), dpi=80, layout="constrained")
     loop.plot(place, friction, color="0.7")
     over_time.plot(time, film, color="0.7")

@@ -33,6 +33,10 @@ def test_the_answer_is_friction_beside_steady_sliding_and_files_hold_the_rest(ca
     state = sb.solve(sb.load_case(PDMS).contact.replace(speed=3e-3))
     assert found["steady_friction"] == pytest.approx(state.friction.total, rel=1e-3)
     assert found["friction"][-1] == found["friction_at_largest_speed"]
+    # Numbers have the names and units of those of a state.
+    assert found["definition"] == "balanced" and "friction on the way out, balanced" in answer.out
+    assert found["central_film_thickness"][-1] == pytest.approx(state.to_dict()["central_film_thickness"], rel=0.15)  # it lags
+    assert found["units"]["central_film_thickness"] == "m" and "central_gap" not in found
     # The film of a ramp of three half-widths lags behind the speed, so that there is more friction than in steady sliding.
     path, friction = np.array(found["position"]), np.array(found["friction"])
     mean = np.trapezoid(friction, path) / np.ptp(path)
@@ -47,7 +51,8 @@ def test_the_answer_is_friction_beside_steady_sliding_and_files_hold_the_rest(ca
     import xarray
 
     with xarray.open_dataset(files[0]) as data:
-        assert np.array_equal(data.friction, found["friction"])
+        assert np.array_equal(data.friction, found["friction"]) and data.attrs["definition"] == "balanced"
+        assert data.friction_fluid_error.long_name == "estimated absolute error of friction_fluid"
     assert files[1].stat().st_size > 10_000
 
 

@@ -97,7 +97,7 @@ def _lines(found: Stroke, steady: dict[str, float], title: str, verbose: bool) -
     yield from filter(None, [title])
     speed = format_si(steady["largest_speed"], "speed")
     rows = [
-        ("friction on the way out", "stroke", "error", "steady", "error"),
+        ("friction on the way out, balanced", "stroke", "error", "steady", "error"),
         _row(f"at the largest speed, {speed}", steady, "friction_at_largest_speed", "steady_friction"),
         _row("mean over the path", steady, "mean_friction", "steady_mean_friction"),
     ]
@@ -130,10 +130,10 @@ def _instants(found: Stroke) -> list[tuple[str, ...]]:
         )
         where = (
             format_si(found.time[k], "time"),
-            format_si(place if abs(place) > ROUNDING * found.half_width else 0.0, "length"),
+            format_si(place if abs(place) > ROUNDING * found.hertz_half_width else 0.0, "length"),
             format_si(found.speed[k], "speed"),
         )
-        rows.append((*where, *numbers, format_si(found.central_gap[k], "length")))
+        rows.append((*where, *numbers, format_si(found.central_film_thickness[k], "length")))
     return rows
 
 

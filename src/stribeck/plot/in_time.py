@@ -145,10 +145,12 @@ def plot_stroke(stroke: Stroke, *, ax: Axes | None = None, title: str = "", note
     loop.axhline(0.0, color=GREY, lw=0.6, zorder=0)
     loop.set(xlabel=with_unit("position", unit), ylabel="friction coefficient")
     if others:
-        time, film = np.asarray(data["time"])[last], np.asarray(data["central_gap"])[last]
+        time, film = np.asarray(data["time"])[last], np.asarray(data["central_film_thickness"])[last]
         factor, unit = readable_unit("length", float(film.max()))
         others[0].plot(time, film * factor, color=FLUID, lw=1.4, label="film at the centre")
-        others[0].plot(time, np.asarray(data["minimum_gap"])[last] * factor, color=MARK, lw=1.2, label="thinnest film")
+        others[0].plot(
+            time, np.asarray(data["minimum_film_thickness"])[last] * factor, color=MARK, lw=1.2, label="thinnest film"
+        )
         others[0].set(xlabel="time (s)", ylabel=with_unit("film", unit))
     add_legend(figure, [loop, *others], columns=5, inside=ax)
     return figure

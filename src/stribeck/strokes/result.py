@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact, input_texts
+from stribeck.contacts.friction import Definition
 from stribeck.files.datasets import Column
 from stribeck.files.results import Exported, Labelled
 from stribeck.motions.motion import Motion
@@ -29,22 +30,24 @@ class Stroke(Exported, Told, ByValue):
     contact: Annotated[Contact, "the contact; its speed is the largest of the motion"]
     motion: Annotated[Motion, "the motion"] = field(repr=False)
     cycles: Annotated[int, "times that it was repeated"]
-    half_width: Annotated[float, "half-width of the dry contact", "m"]
+    hertz_half_width: Annotated[float, "half-width of the dry contact", "m"]
     time: Annotated[Array, "instants", "s"]
     speed: Annotated[Array, "sliding speed, negative on the way back", "m/s"]
     position: Annotated[Array, "position of the moving surface", "m"]
-    friction: Annotated[Array, "friction coefficient, with the sign of the force against the motion", "1"]
-    friction_asperities: Annotated[Array, "its part by asperities, zero at the instant of a reversal", "1"]
-    friction_fluid: Annotated[Array, "its part by the fluid", "1"]
+    friction: Annotated[Array, "friction coefficient, balanced, with the sign of the force against the motion", "1"]
+    friction_asperities: Annotated[Array, "contribution of asperities, zero at the instant of a reversal", "1"]
+    friction_fluid: Annotated[Array, "contribution of the fluid", "1"]
     contact_load_share: Annotated[Array, "share of the load on asperities", "1"]
-    central_gap: Annotated[Array, "gap at the centre", "m"]
-    minimum_gap: Annotated[Array, "minimum gap", "m"]
+    central_film_thickness: Annotated[Array, "gap at the centre", "m"]
+    minimum_film_thickness: Annotated[Array, "minimum gap", "m"]
     left_flow: Annotated[Array, "liquid that passes the left edge of the dry contact, to the right", "m2/s"]
     right_flow: Annotated[Array, "liquid that passes the right edge of the dry contact, to the right", "m2/s"]
     errors: Annotated[dict[str, Array], "estimated absolute errors of the eight before it, by name, in their units"]
     work: Annotated[float, "work of friction per length of the contact in the last cycle, or in the whole motion", "J/m"]
     work_error: Annotated[float, "its estimated error", "J/m"]
     notes: Annotated[tuple[str, ...], "what to know before using the numbers"] = ()
+
+    definition: ClassVar[Definition] = "balanced"
 
     @property
     def last_cycle(self) -> slice:
@@ -64,11 +67,12 @@ class Stroke(Exported, Told, ByValue):
     @property
     def half_widths(self) -> float:
         """Length of the stroke, from end to end, in half-widths; below 1000 it is no row of steady states."""
-        return float(np.ptp(self.position) / self.half_width)
+        return float(np.ptp(self.position) / self.hertz_half_width)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the numbers over time, and those of the last cycle, with their errors, ready for JSON."""
-        found: dict[str, Any] = {name: getattr(self, name) for name in ("cycles", "half_width", "half_widths")}
+        names = ("definition", "cycles", "hertz_half_width", "half_widths")
+        found: dict[str, Any] = {name: getattr(self, name) for name in names}
         found |= {
             "largest_contact_load_share": self.largest_contact_load_share,
             "largest_contact_load_share_error": float(self.errors["contact_load_share"][self._where_largest]),
@@ -78,23 +82,24 @@ class Stroke(Exported, Told, ByValue):
         found |= {name: getattr(self, name).tolist() for name in ("time", "speed", "position")}
         for name, error in self.errors.items():
             found |= {name: getattr(self, name).tolist(), f"{name}_error": error.tolist()}
-        return found | {"notes": list(self.notes)}
+        units = {name: each.unit for name, each in self._words.items() if each.unit is not None and name in found}
+        return found | {"units": units, "notes": list(self.notes)}
 
     def _card(self) -> Card:
         last, largest = self.last_cycle, self._where_largest
         peak = int(np.argmax(np.abs(self.friction[last]))) + last.start
-        thinnest = int(np.argmin(self.minimum_gap[last])) + last.start
+        thinnest = int(np.argmin(self.minimum_film_thickness[last])) + last.start
         rows = [
             ("stroke", f"{format_si(float(np.ptp(self.position)), 'length')}, {self.half_widths:.3g} half-widths"),
             (
                 "largest share of asperities",
                 f"{self.contact_load_share[largest]:.3g} ± {format_error(self.errors['contact_load_share'][largest])}",
             ),
-            ("largest friction", f"{abs(self.friction[peak]):.3g} ± {format_error(self.errors['friction'][peak])}"),
+            ("largest friction, balanced", f"{abs(self.friction[peak]):.3g} ± {format_error(self.errors['friction'][peak])}"),
             (
                 "thinnest film",
-                f"{format_si(self.minimum_gap[thinnest], 'length')} ± "
-                f"{format_error(self.errors['minimum_gap'][thinnest], 'length')}",
+                f"{format_si(self.minimum_film_thickness[thinnest], 'length')} ± "
+                f"{format_error(self.errors['minimum_film_thickness'][thinnest], 'length')}",
             ),
             ("work of friction per length", f"{self.work:.4g} ± {format_error(self.work_error)} J/m"),
         ]
@@ -106,18 +111,19 @@ class Stroke(Exported, Told, ByValue):
         said = {name: (self._words[name].unit or "1", self._words[name].meaning) for name in names}
         columns: dict[str, Column] = {name: ("time", getattr(self, name), *words) for name, words in said.items()}
         columns |= {
-            f"{name}_error": ("time", error, said[name][0], f"estimated error of the {said[name][1].partition(',')[0]}")
+            f"{name}_error": ("time", error, said[name][0], f"estimated absolute error of {name}")
             for name, error in self.errors.items()
         }
         columns |= {
             "work": ((), self.work, "J/m", "work of friction per length in the last cycle"),
-            "work_error": ((), self.work_error, "J/m", "estimated error of the work of friction"),
+            "work_error": ((), self.work_error, "J/m", "estimated absolute error of work"),
         }
         attributes = {
             "title": "A stroke of a lubricated rough line contact",
             "motion": type(self.motion).__name__,
             "cycles": self.cycles,
-            "stroke_over_half_width": self.half_widths,
+            "half_widths": self.half_widths,
+            "definition": self.definition,
             "inputs": "; ".join(input_texts(self.contact)),
             "notes": " ".join(self.notes),
         }
