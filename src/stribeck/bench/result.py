@@ -48,7 +48,7 @@ class BenchCurve(Exported, Told, ByValue):
     curves: Annotated[tuple[str, ...], "names of the curves"]
     inputs: Annotated[tuple[dict[str, float], ...], "inputs of each curve in SI units, as far as the files say them"]
     curve: Annotated[Indices, "curve of each point"]
-    speed: Annotated[Array, "sum of the surface speeds", "m s-1"]
+    speed: Annotated[Array, "sum of the surface speeds", "m/s"]
     friction: Annotated[Array, "friction coefficient, mean of both directions", "1"]
     half_width: Annotated[Array, "half of the 95 % interval of the friction coefficient; NaN where nothing shows it", "1"]
     rows: Annotated[Indices, "rows of the files", "1"]
@@ -63,7 +63,7 @@ class BenchCurve(Exported, Told, ByValue):
     file: Annotated[Indices, "number of the file of each row", "1"]
     row: Annotated[Indices, "row of the file, counted from 1", "1"]
     time: Annotated[Array, "time of each row, or its number", "s"]
-    row_speed: Annotated[Array, "speed of the row, with its sign", "m s-1"]
+    row_speed: Annotated[Array, "speed of the row, with its sign", "m/s"]
     row_friction: Annotated[Array, "friction coefficient of the row, positive along the motion", "1"]
     status: Annotated[Indices, "0 kept, 1 at rest, 2 the speed changes, 3 start of a step, 4 run-in", "1"]
 
@@ -118,7 +118,7 @@ class BenchCurve(Exported, Told, ByValue):
 
     def to_dict(self) -> dict[str, Any]:
         """Return points, notes and inputs, ready for JSON."""
-        columns = {name: getattr(self, name) for name in (*POINTS, "error")}
+        columns = {name: getattr(self, name).tolist() for name in (*POINTS, "error")}
         of = {"paths": list(self.paths), "curves": list(self.curves), "inputs": list(self.inputs)}
         return of | {"curve": [self.curves[k] for k in self.curve]} | columns | {"notes": list(self.notes)}
 
