@@ -268,11 +268,13 @@ def test_results_write_a_table_with_a_row_for_each_state(state, tmp_path):
 
 def test_a_fit_shows_itself_and_is_a_dataset():
     xarray = pytest.importorskip("xarray")
-    found = sb.fit(noisy(seed=5_417, rows=8), CONTACT, free=["boundary_friction", "beta"], intervals=False)
+    found = sb.fit(noisy(seed=5_417, rows=8), CONTACT, free=["boundary_friction", "viscosity"], intervals=False)
     assert repr(found).startswith("Fit: The fit converged.") and len(repr(found).splitlines()) < 20
-    assert "boundary_friction" in found._repr_html_() and found.to_si()["beta"] == found["beta"].value
+    assert "boundary_friction" in found._repr_html_() and found.to_si()["viscosity"] == found["viscosity"].value
     data = found.to_dataset()
-    assert isinstance(data, xarray.Dataset) and data.speed.units == "m s-1"
+    assert isinstance(data, xarray.Dataset) and data.speed.units == "m/s"
+    assert data.attrs["definition"] == "balanced" and data.attrs["notes"] == "\n".join(found.notes)
+    assert found["viscosity"].unit == sb.solve(CONTACT).to_dict()["units"]["viscosity"] == "Pa s"
     np.testing.assert_array_equal(data.fitted_friction, found.friction)
 
 

@@ -47,7 +47,7 @@ class NextRun(Record):
     """One run worth measuring."""
 
     curve: Annotated[str, "curve whose contact it is, perhaps at another load or viscosity", "1"]
-    speed: Annotated[float, "sum of the surface speeds", "m s-1"]
+    speed: Annotated[float, "sum of the surface speeds", "m/s"]
     load: Annotated[float, "load", ""]
     viscosity: Annotated[float, "viscosity", "Pa s"]
     friction: Annotated[float, "friction coefficient to expect", "1"]

@@ -197,8 +197,8 @@ def residual_chart(found: Fit) -> Options:
     for k, name in enumerate(data.curves):
         mine = data.curve == k
         series.append(_series(f"measured{k % 3}", name, "points", _pairs(x[mine], residuals[mine])))
-    unit = {"m s-1": "m/s", "m-1": "1/m", "1": ""}.get(UNITS[data.abscissa], UNITS[data.abscissa])
-    across = axis(data.abscissa.replace("_", " "), unit, *ends)
+    unit = UNITS[data.abscissa]
+    across = axis(data.abscissa.replace("_", " "), "" if unit == "1" else unit, *ends)
     return {"x": across, "y": axis("residual/error", "", -reach, reach, log=False), "series": series}
 
 

@@ -41,7 +41,7 @@ __all__ = ["Data", "Measurements", "files_of", "measurements_of", "read_file", "
 # Around what each column was taken for
 READ, CHANGE_READ = "Read: ", ". To change this, name the columns in [fit.columns] of the case."
 
-UNITS = {"speed": "m s-1", "speed_viscosity": "Pa m", "hersey_number": "1", "hersey_per_length": "m-1"}
+UNITS = {"speed": "m/s", "speed_viscosity": "Pa m", "hersey_number": "1", "hersey_per_length": "1/m"}
 
 
 @dataclass(frozen=True, eq=False, repr=False)

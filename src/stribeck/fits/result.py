@@ -76,6 +76,13 @@ class FittedInput(Record):
         return format_value(self), error, format_interval(self, 0.68), format_interval(self, 0.95)
 
 
+def columns_of_inputs(inputs: Sequence[FittedInput]) -> tuple[dict[str, Column], dict[str, Column]]:
+    """Return what fitted inputs have as columns along ``input``, and this coordinate."""
+    found = columns_of_records("input", inputs, FittedInput._labels)
+    labels: Column = ("input", listed([each.label for each in inputs]), "1", "fitted input")
+    return {f"input_{name}": each for name, each in found.items()}, {"input": labels}
+
+
 class WithFittedInputs:
     """A result that gives its fitted inputs by name."""
 
@@ -261,11 +268,10 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
         return {each.label: each.value for each in self.inputs}
 
     def _labelled(self) -> Labelled:
-        columns, found = self._rows, columns_of_records("input", self.inputs, FittedInput._labels)
-        labels: Column = ("input", listed([each.label for each in self.inputs]), "1", "fitted input")
-        coords = {"row": columns.pop("row"), "input": labels}
-        columns |= {f"input_{name}": each for name, each in found.items()}
-        return columns, coords, {"title": "Fit to measured friction", "message": self.outcome.value}
+        rows, (columns, coords) = self._rows, columns_of_inputs(self.inputs)
+        about = {"definition": self.definition, "contact_law": self.law, "notes": "\n".join(self.notes)}
+        coords["row"] = rows.pop("row")
+        return rows | columns, coords, {"title": "Fit to measured friction", "outcome": self.outcome.value, **about}
 
     def _card(self) -> Card:
         table = [("input", "fitted", "error", "68 %", "95 %", "case")]
@@ -325,7 +331,7 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
 
 def unit_of(name: str, is_factor: bool, table: InputTable = LINE) -> str:
     """Return the SI unit of a fitted input."""
-    return "" if is_factor else DIMENSIONS[table.rows[name].dimension].unit
+    return "" if is_factor else DIMENSIONS[table.rows[name].dimension].unit.replace("*", " ")
 
 
 def format_value(each: FittedInput, value: float | None = None, digits: int = 4) -> str:
