@@ -42,7 +42,10 @@ def test_boundary_friction_comes_out_of_a_loop_over_position(case, tmp_path):
     low, high = found["boundary_friction"].interval_95
     assert low < 0.5 < high and high / low < 1.6
     assert 0.7 * NOISE < found.noise < 4 * NOISE  # with what 24 steps leave
-    assert float(found.to_dataset().boundary_friction) == found["boundary_friction"].value
+    data, rows = found.to_dataset(), json.loads(json.dumps(found.to_dict()))["rows"]
+    assert data.input_high_95.sel(input="boundary_friction") == high
+    assert list(rows) == ["position", "friction", "fitted_friction", "fitted_friction_error"]
+    assert rows["friction"] == data.friction.values.tolist() == found.measured.tolist()
     (axes,) = found.plot(tmp_path / "loop.png").axes
     assert axes.get_xlabel() == "position (mm)"
 

@@ -16,6 +16,7 @@ from stribeck.cases.fit_settings import FitSettings
 from stribeck.cases.reading import load_case
 from stribeck.contacts.geometries import LineContact
 from stribeck.files.columns import Column, read_columns
+from stribeck.files.datasets import Column as DataColumn
 from stribeck.files.results import Exported, Labelled
 from stribeck.files.writing import PathLike, path_of
 from stribeck.fits.columns import WORDS
@@ -27,7 +28,15 @@ from stribeck.fits.least_squares import Minimum, Objective, settle
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.model import Prediction
 from stribeck.fits.repeats import CLEAR, memory
-from stribeck.fits.result import FitOutcome, FittedInput, WithFittedInputs, notes_of_inputs, outcome_of_inputs, unit_of
+from stribeck.fits.result import (
+    FitOutcome,
+    FittedInput,
+    WithFittedInputs,
+    columns_of_inputs,
+    notes_of_inputs,
+    outcome_of_inputs,
+    unit_of,
+)
 from stribeck.motions.motion import Motion
 from stribeck.quantities.formats import format_percent
 from stribeck.quantities.results import ByValue, Card, Told
@@ -95,7 +104,7 @@ class LoopFit(WithFittedInputs, Exported, Told, ByValue):
     friction: Annotated[Array, "fitted friction coefficient", "1"]
     friction_error: Annotated[Array, "error of the latter by steps and mesh", "1"]
     noise: Annotated[float, "standard deviation of the residuals", "1"]
-    correlation: Annotated[float, "correlation of neighbouring residuals, which widens the intervals", "1"]
+    autocorrelation: Annotated[float, "correlation of neighbouring residuals, which widens the intervals", "1"]
     undetermined: Annotated[tuple[Unidentifiable, ...], "combinations of inputs that the loop does not determine"] = ()
     notes: Annotated[tuple[str, ...], "what to know before using the numbers"] = ()
 
@@ -106,18 +115,30 @@ class LoopFit(WithFittedInputs, Exported, Told, ByValue):
             "message": self.outcome.value,
             "inputs": [each.to_dict() for each in self.inputs],
             "noise": self.noise,
-            "correlation": self.correlation,
+            "autocorrelation": self.autocorrelation,
             "over": self.over,
+            "definition": self.stroke.definition,
             "undetermined": [asdict(each) for each in self.undetermined],
             "notes": list(self.notes),
         }
-        return found | {name: getattr(self, name).tolist() for name in ("values", "measured", "friction", "friction_error")}
+        return found | {"rows": {name: np.asarray(values).tolist() for name, (_, values, _, _) in self._rows.items()}}
+
+    @property
+    def _rows(self) -> dict[str, DataColumn]:
+        """What stands along the rows of the loop."""
+        unit = "m" if self.over == "position" else "s"
+        return {
+            self.over: ("row", self.values, unit, f"{self.over} of the row"),
+            "friction": ("row", self.measured, "1", "measured friction coefficient"),
+            "fitted_friction": ("row", self.friction, "1", "fitted friction coefficient, balanced"),
+            "fitted_friction_error": ("row", self.friction_error, "1", "estimated absolute error of fitted_friction"),
+        }
 
     def _card(self) -> Card:
         table = [("input", "value", "error", "68 % interval", "95 % interval")]
         table += [(each.label, *each.texts) for each in self.inputs]
         largest = float(np.abs(self.measured).max())
-        alike = f"correlated by {self.correlation:.2f}" if self.correlation >= 0.005 else "uncorrelated"
+        alike = f"correlated by {self.autocorrelation:.2f}" if self.autocorrelation >= 0.005 else "uncorrelated"
         rows = [
             ("noise", f"{self.noise:.2g}, {format_percent(self.noise / largest)} of the largest friction"),
             ("rows", f"{len(self.measured)}, neighbours {alike}"),
@@ -127,18 +148,9 @@ class LoopFit(WithFittedInputs, Exported, Told, ByValue):
         return Card(self.outcome.value, rows, self.notes, table, right=(1, 2), sentences=warnings)
 
     def _labelled(self) -> Labelled:
-        unit = "m" if self.over == "position" else "s"
-        columns: dict[str, Any] = {
-            self.over: ("row", self.values, unit, f"{self.over} of the row"),
-            "measured_friction": ("row", self.measured, "1", "measured friction coefficient"),
-            "fitted_friction": ("row", self.friction, "1", "fitted friction coefficient"),
-            "fitted_friction_error": ("row", self.friction_error, "1", "estimated error of the fitted friction coefficient"),
-        }
-        for each in self.inputs:
-            columns[each.name] = ((), each.value, each.unit or "1", f"fitted {each.label}")
-            columns[f"{each.name}_standard_error"] = ((), each.standard_error, "1", f"standard error of ln({each.label})")
-        said = {"outcome": self.outcome.value, "notes": " ".join(self.notes)}
-        return columns, {}, {"title": "Inputs fitted to a friction loop", **said}
+        columns, coords = columns_of_inputs(self.inputs)
+        said = {"outcome": self.outcome.value, "definition": self.stroke.definition, "notes": "\n".join(self.notes)}
+        return self._rows | columns, coords, {"title": "Inputs fitted to a friction loop", **said}
 
 
 def fit_loop(

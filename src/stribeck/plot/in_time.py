@@ -164,7 +164,7 @@ def plot_loop_fit(fit: LoopFit, *, ax: Axes | None = None, title: str = "", note
     figure, (axes,) = new_figure((6.4, 4.6), said, fit.notes if notes else (), title=title or "A fitted friction loop", ax=ax)
     x = np.asarray(data[fit.over])
     factor, unit = readable_unit("length", float(np.ptp(x))) if fit.over == "position" else (1.0, "s")
-    axes.plot(x * factor, np.asarray(data["measured_friction"]), ".", color=GREY, ms=4, label="measured")
+    axes.plot(x * factor, np.asarray(data["friction"]), ".", color=GREY, ms=4, label="measured")
     fitted, error = np.asarray(data["fitted_friction"]), np.asarray(data["fitted_friction_error"])
     axes.errorbar(x * factor, fitted, error, fmt=".", color=INK, ecolor=MARK, ms=3, lw=0.8, label="fitted, with its error")
     axes.axhline(0.0, color=GREY, lw=0.6, zorder=0)
