@@ -137,7 +137,9 @@ def test_a_state_and_a_curve_are_in_si_units(state, curve):
 def test_a_state_and_a_curve_are_ready_for_json(state, curve):
     for each in (state, curve):
         assert set(json.loads(json.dumps(each.to_dict()))) == set(each.to_dict())
-    points = json.loads(json.dumps(curve.to_dict()))["points"]
+    points, units = (json.loads(json.dumps(curve.to_dict()))[name] for name in ("points", "units"))
+    numbers = {name for name in points if isinstance(points[name][0], float) and not name.endswith("_error")} - {"value"}
+    assert numbers <= set(units) and units["hertz_pressure"] == state.to_dict()["units"]["hertz_pressure"] == "Pa"
     assert points["value"] == curve.values.tolist() and points["friction"] == curve.friction.tolist()
 
 

@@ -18,6 +18,8 @@ __all__ = ["curve_dict", "curve_table", "marks_of"]
 
 Columns = dict[str, tuple[Any, str, str]]
 
+WORDS = ("regime", "outcome")  # Columns that hold text
+
 
 def curve_table(curve: Any) -> Labelled:
     """Return columns, coordinate and attributes of a Stribeck curve."""
@@ -28,17 +30,20 @@ def curve_table(curve: Any) -> Labelled:
 
 def curve_dict(curve: Any) -> dict[str, Any]:
     """Return a curve with its settings, landmarks and points, ready for JSON."""
+    about, columns = about_problem(curve.groups, curve.contact), _columns(curve)
+    units = {name: unit for name, (_, unit, _) in columns.items() if not name.endswith("_error") and name not in WORDS}
     return {
         "over": curve.over,
         "unit": curve.unit,
         "definition": curve.definition,
-        **about_problem(curve.groups, curve.contact),
+        **about,
+        "units": (about["units"] or {}) | units,
         "rtol": curve.rtol,
         "boundary_friction": _coefficient(curve),
         "beta": curve.beta,
         "minimum": None if curve.minimum is None else curve.minimum.to_dict(),
         **marks_of(curve),
-        "points": {"value": curve.values.tolist(), **{name: each.tolist() for name, (each, _, _) in _columns(curve).items()}},
+        "points": {"value": curve.values.tolist(), **{name: each.tolist() for name, (each, _, _) in columns.items()}},
         "requested_points": curve.requested,
         "complete": curve.outcome.ok,
         "error_estimate": curve.error_estimate,

@@ -315,7 +315,7 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
     ) -> dict[str, Any]:
         """Return inputs, the numbers of :meth:`to_dataset` with their errors and units, and the outcome, ready for JSON.
 
-        The error of a number has its name and ``_error``, and its unit; that of a gap in Hertz units is relative.
+        The error of a number has its name and ``_error``, and its unit.
 
         Parameters
         ----------
