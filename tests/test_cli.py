@@ -272,7 +272,7 @@ def test_regimes_tells_the_regime_the_transitions_and_what_moves_friction_also_i
         in answer.out
     )
     for row in (
-        r"transition +speed +change +friction",
+        r"transition +speed +change +friction, balanced",
         r"fluid carries 5 % of the load +367\.9 µm/s +2\.72x slower",
         r"fluid carries 50 % of the load +2\.795 mm/s +2\.79x faster",
         r"minimum of friction +27\.6 mm/s +27\.6x faster +0\.03469",

@@ -44,6 +44,7 @@ def test_boundary_friction_comes_out_of_a_loop_over_position(case, tmp_path):
     assert 0.7 * NOISE < found.noise < 4 * NOISE  # with what 24 steps leave
     data, rows = found.to_dataset(), json.loads(json.dumps(found.to_dict()))["rows"]
     assert data.input_high_95.sel(input="boundary_friction") == high
+    assert "friction: balanced" in str(found) and data.attrs["definition"] == "balanced"
     assert list(rows) == ["position", "friction", "fitted_friction", "fitted_friction_error"]
     assert rows["friction"] == data.friction.values.tolist() == found.measured.tolist()
     (axes,) = found.plot(tmp_path / "loop.png").axes

@@ -142,6 +142,7 @@ class LoopFit(WithFittedInputs, Exported, Told, ByValue):
         rows = [
             ("noise", f"{self.noise:.2g}, {format_percent(self.noise / largest)} of the largest friction"),
             ("rows", f"{len(self.measured)}, neighbours {alike}"),
+            ("friction", self.stroke.definition),
             ("error of the stroke", f"{float(self.friction_error.max()):.1g} at most"),
         ]
         warnings = [f"Warning: {each.message}" for each in self.undetermined]

@@ -91,7 +91,7 @@ def mark_texts(curve: StribeckCurve, mark: Landmark) -> tuple[str, str]:
 
 def mark_table(curve: StribeckCurve, changes: Sequence[str] = ()) -> list[str]:
     """Return the transitions of a curve, with what it takes to get there where that is given."""
-    rows = [("transition", str(curve.over), *(["change"] if changes else []), "friction")]
+    rows = [("transition", str(curve.over), *(["change"] if changes else []), f"friction, {curve.definition}")]
     for i, mark in enumerate(curve.transitions):
         where, friction = mark_texts(curve, mark)
         rows.append((str(mark.name), where, *changes[i : i + 1], friction))
