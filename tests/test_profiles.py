@@ -1,9 +1,12 @@
 """Bodies that are no cylinder: their states against other discretisations, their limits and what is refused."""
 
+import json
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 import pytest
+from command_line import call
 from scipy.optimize import fsolve
 
 import stribeck as sb
@@ -88,6 +91,11 @@ def groups(speed, curvature=1.0):
     return sb.Groups(speed / curvature, LOAD * curvature, KAPPA * LOAD * curvature)
 
 
+@cache
+def solved(speed, shape, cavitation, rtol=1e-3, curvature=1.0):
+    return sb.solve(groups(speed, curvature), profile=shape, cavitation=cavitation, rtol=rtol)
+
+
 # Speed and share of the load on asperities of full films, by today's solver with the profile put in and, but for the last
 # digits, by finite volumes.
 FULL_FILMS = {
@@ -103,14 +111,14 @@ def test_full_films_have_the_shares_of_other_discretisations(subtests):
         with subtests.test(name=name):
             shape, curvature, shares = FULL_FILMS[name]
             for speed, share in shares.items():
-                found = sb.solve(groups(speed, curvature), profile=shape, cavitation="none")
+                found = solved(speed, shape, "none", 1e-6, curvature)
                 assert 1 - found.fluid_load_share == pytest.approx(share, abs=1e-6)
 
 
 def test_the_stated_error_covers_a_finer_solution(subtests):
-    for shape, cavitation in ((LAND, "exit"), (LIP, "none")):
+    for speed, shape, cavitation in ((1e-3, LAND, "exit"), (1e-4, LIP, "none")):
         with subtests.test(shape=shape, cavitation=cavitation):
-            coarse, fine = (sb.solve(groups(1e-3), profile=shape, cavitation=cavitation, rtol=rtol) for rtol in (1e-4, 1e-6))
+            coarse, fine = (solved(speed, shape, cavitation, rtol) for rtol in (1e-3, 1e-6))
             for name, error in coarse.errors.items():
                 exact = getattr(fine, name)
                 scale = 1.0 if name.endswith(("share", "position")) else abs(exact)
@@ -118,7 +126,7 @@ def test_the_stated_error_covers_a_finer_solution(subtests):
 
 
 def test_published_friction_projects_the_pressure_on_the_slope_of_the_body():
-    found = sb.solve(groups(1e-3), profile=LIP, cavitation="none", rtol=1e-3)
+    found = solved(1e-4, LIP, "none")
     x = np.linspace(-6, 6, 60001)
     moment = np.trapezoid(LIP.slope(x) * found.profile(x).fluid_pressure, x)
     assert found.viscous_published == pytest.approx(found.viscous_upper - 4 * LOAD**0.5 / np.pi * moment, rel=1e-2)
@@ -148,7 +156,7 @@ def test_films_that_end_have_the_friction_of_finite_volumes(subtests):
             shape, *values = FRICTION[name]
             for speed, value in zip((1e-4, 1e-3), values, strict=True):
                 if value is not None:
-                    found = sb.solve(groups(speed), profile=shape, cavitation="exit", rtol=1e-3)
+                    found = solved(speed, shape, "exit")
                     assert float(found.friction(0.5, 0.1 / (2 * LOAD**0.5))) == pytest.approx(value, rel=5e-3, abs=5e-5)
 
 
@@ -185,15 +193,12 @@ def test_a_reversed_shape_is_its_mirror_image():
         def slope(self, x):
             return -self.of.slope(-x)
 
-    mirrored, turned = (
-        sb.solve(groups(1e-3), profile=shape, cavitation="exit", rtol=1e-4)
-        for shape in (Mirrored(LIP), Reversed("lip", LIP.numbers))
-    )
+    mirrored, turned = (solved(1e-3, shape, "exit") for shape in (Mirrored(LIP), Reversed("lip", LIP.numbers)))
     assert turned.minimum_gap == pytest.approx(mirrored.minimum_gap, rel=1e-12)
 
 
 def test_what_is_made_for_the_parabola_refuses_a_shape():
-    state = sb.solve(groups(1e-3), profile=WORN, cavitation="none", rtol=1e-3).groups
+    state = solved(1e-3, WORN, "none", 1e-6).groups
     assert "profile" in repr(state.model)
     with pytest.raises(sb.InputError, match="Smooth"):
         sb.asymptotics.FORMULAS[0](state)
@@ -351,7 +356,7 @@ def test_slow_smooth_films_follow_the_edge_of_the_dry_pressure(subtests):
             assert films[1] == pytest.approx(1.0, abs=0.02)
 
 
-def test_a_case_names_a_shape(tmp_path):
+def test_a_case_names_a_shape_and_its_check_says_how_steep_it_is_and_why_the_film_ends(capsys, tmp_path):
     lines = "\n".join(f"{name} = {value!r}".replace("'", '"') for name, value in CONTACT.items())
     case = tmp_path / "lip.toml"
     lip = 'shape = "lip"\nangle_oil = "15 deg"\nangle_air = "8 deg"\ntip_radius = "0.5 mm"\n'
@@ -359,6 +364,10 @@ def test_a_case_names_a_shape(tmp_path):
     contact = sb.load_case(case).contact
     assert contact.profile == sb.profiles.Lip("15 deg", "8 deg", "0.5 mm", reversed=True)
     assert contact.cavitation == "exit"
+    checks = {each["name"]: each for each in json.loads(call(capsys, "solve", case, "--json").out)["checks"]}
+    assert checks["shape"]["value"] == pytest.approx(0.202, abs=2e-3)
+    assert "ends at the exit" in checks["shape"]["sentence"]
+    assert "contact width a/R" not in checks
     for text, sentence in (
         (f"[contact]\nradius = 0.01\n{lines}\n[profile]\n{lip}", "are both given"),
         (f'[contact]\n{lines}\n[profile]\nshape = "wedge"\n', "shape = 'wedge'"),
@@ -368,14 +377,6 @@ def test_a_case_names_a_shape(tmp_path):
         case.write_text(text)
         with pytest.raises(sb.InputError, match=sentence):
             sb.load_case(case)
-
-
-def test_the_check_of_a_shape_says_how_steep_it_is_and_why_the_film_ends():
-    contact = sb.LineContact(profile=sb.profiles.Lip("15 deg", "8 deg", "0.5 mm"), **CONTACT)
-    found = {each.name: each for each in sb.check(contact.replace(law="exponential"))}
-    assert found["shape"].value == pytest.approx(0.202, abs=2e-3)
-    assert "ends at the exit" in found["shape"].sentence
-    assert "contact width a/R" not in found
 
 
 @dataclass(frozen=True)
