@@ -171,16 +171,15 @@ def test_formulas_stand_beside_the_solved_transitions(diagram):
 
 
 def test_the_merging_roughness_parts_curves_with_a_minimum_and_takes_the_quotient_of_the_friction_coefficients():
-    grid = {"load": 0.1, "roughness": 1e-3, "speed": 1e-3, "merging": True}
-    found = float(sb.phase_diagram(**grid).roughness_without_minimum.squeeze())
+    contact = contact_of(sb.Groups(1.0, 0.1, 1e-3)).replace(boundary_friction=BETA)
+    line = sb.phase_diagram(contact, speed="1 mm/s", merging=True).roughness_without_minimum
+    found = contact.replace(roughness=float(line.squeeze())).groups.roughness
     assert found == pytest.approx(0.0174919, rel=1e-5)
     for factor, present in ((0.98, True), (1.02, False)):
         curve = sb.stribeck_curve(load=0.1, roughness=factor * found, rtol=1e-7, points=101)
         assert bool(np.diff(curve.friction.total).min() < 0) == present
-    contact = contact_of(sb.Groups(1.0, 0.1, 1e-3)).replace(boundary_friction=BETA)
-    line = sb.phase_diagram(contact, speed="1 mm/s", merging=True).roughness_without_minimum
-    assert contact.replace(roughness=float(line.squeeze())).groups.roughness == pytest.approx(found, rel=1e-5)
-    assert sb.phase_diagram(**grid, boundary_friction=0.0).roughness_without_minimum.squeeze() == 0
+    without = sb.phase_diagram(load=0.1, roughness=1e-3, speed=1e-3, merging=True, boundary_friction=0.0)
+    assert without.roughness_without_minimum.squeeze() == 0
 
 
 # --- units ---

@@ -108,7 +108,9 @@ def test_impossible_solids_are_refused_by_name(subtests):
 @pytest.mark.quick
 def test_a_wide_panel_acts_on_near_and_far_nodes_as_by_its_parts(subtests):
     edges = np.array([-12.0, -6.0, -1.0, -0.5, 0.0, 0.5, 1.0, 6.0, 12.0])
-    parts = np.unique(np.concatenate([np.linspace(a, b, 33) for a, b in zip(edges[:-1], edges[1:], strict=True)]))
+    kink = 0.5 * np.array([0.0, *2.0 ** -np.arange(6)])  # Panels shrink towards the ends of the pressure
+    parts = [np.linspace(a, b, 5) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    parts = np.unique(np.concatenate([*parts, *(end + sign * kink for end in (1, 6) for sign in (-1, 1))]))
     wide, fine = Mesh(edges, 12), Mesh(parts, 12)
     for d, poisson_ratio in [(0.1, 0.45), (3.0, 0.5)]:
         with subtests.test(d=d, poisson_ratio=poisson_ratio):
@@ -119,9 +121,7 @@ def test_a_wide_panel_acts_on_near_and_far_nodes_as_by_its_parts(subtests):
             layer, near = Layer(d, poisson_ratio), np.abs(wide.nodes) < 12
             found = (layer.deflection(wide) @ pressure(wide.nodes))[near]
             exact = fine.interpolate(layer.deflection(fine) @ pressure(fine.nodes), wide.nodes[near])
-            np.testing.assert_allclose(
-                found, exact, rtol=0, atol=2e-8
-            )  # the kink of the pressure costs the interpolation this
+            np.testing.assert_allclose(found, exact, rtol=0, atol=1e-9)
 
 
 def test_a_smooth_film_on_a_body_that_remembers_is_found_however_thin_it_is():

@@ -186,7 +186,7 @@ def out_and_back(out, back, half_widths=10.0, part=0.9):
 def test_a_contact_that_runs_into_a_thick_wake_is_flooded():
     """The wake of the fast way out is more than the slow way back can draw in."""
     contact, motion = CONTACT.replace(cavitation="exit"), out_and_back(SPEED, 0.1 * SPEED)
-    flooded, own = (sb.stroke(contact, motion, steps=40, inlet=inlet) for inlet in ("flooded", "own-wake"))
+    flooded, own = (sb.stroke(contact, motion, steps=16, inlet=inlet) for inlet in ("flooded", "own-wake"))
     for name in flooded.errors:
         assert np.allclose(getattr(own, name), getattr(flooded, name), rtol=1e-6, atol=0), name
     assert "has what the contact has left behind itself" in own.notes[0] and "is flooded" in flooded.notes[0]
