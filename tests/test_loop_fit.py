@@ -42,6 +42,7 @@ def test_boundary_friction_comes_out_of_a_loop_over_position(case, tmp_path):
     low, high = found["boundary_friction"].interval_95
     assert low < 0.5 < high and high / low < 1.6
     assert 0.7 * NOISE < found.noise < 4 * NOISE  # with what 24 steps leave
+    assert re.search(r"neighbours correlated by 0\.\d\d$", str(found), re.MULTILINE)
     data, rows = found.to_dataset(), json.loads(json.dumps(found.to_dict()))["rows"]
     assert data.input_high_95.sel(input="boundary_friction") == high
     assert "friction: balanced" in str(found) and data.attrs["definition"] == "balanced"
@@ -51,31 +52,12 @@ def test_boundary_friction_comes_out_of_a_loop_over_position(case, tmp_path):
     assert axes.get_xlabel() == "position (mm)"
 
 
-def test_neighbours_without_correlation_are_called_so(case, tmp_path):
-    contact = sb.load_case(case).contact
-    for seed, said in ((3, "neighbours uncorrelated"), (5, r"neighbours correlated by 0\.\d\d$")):
-        path = loop_of(tmp_path / "loop.csv", contact.replace(boundary_friction=0.5), count=24, seed=seed)
-        found = sb.bench.fit_loop(path, case, free=["boundary_friction"])
-        assert re.search(said, str(found), re.MULTILINE)
-
-
-def test_an_input_that_ends_at_its_bound_is_named(case, tmp_path):
-    path = loop_of(tmp_path / "loop.csv", sb.load_case(case).contact.replace(boundary_friction=0.5))
-    case.write_text(case.read_text() + '\n[fit]\nfree = ["boundary_friction"]\nbounds.boundary_friction = [0.6, 0.9]\n')
+def test_an_input_that_ends_at_its_bound_is_named_and_neighbours_without_correlation_are_called_so(case, tmp_path):
+    path = loop_of(tmp_path / "loop.csv", sb.load_case(case).contact.replace(boundary_friction=0.5), "time [s]", 24, seed=3)
+    case.write_text(case.read_text() + '\n[fit]\nfree = ["boundary_friction"]\nbounds.boundary_friction = [0.55, 0.9]\n')
     found = sb.bench.fit_loop(path, case)
-    assert "ended at a bound" in str(found)
-    assert "boundary_friction ended at its bound 0.6: the data would move it further" in found.notes[0]
-
-
-def test_a_zero_of_the_force_that_is_off_is_found_with_the_inputs(case, tmp_path):
-    path = loop_of(tmp_path / "loop.csv", sb.load_case(case).contact.replace(boundary_friction=0.5), "time [s]")
-    (plain,) = sb.bench.fit_loop(path, case, free=["boundary_friction"]).inputs
-    head, *rows = path.read_text().splitlines()
-    shifted = [f"{x},{float(friction) + 0.05:.7g}" for x, friction in (row.split(",") for row in rows)]
-    path.write_text("\n".join([head, *shifted]))
-    found = sb.bench.fit_loop(path, case, free=["boundary_friction"])
-    assert any("the zero of the force is off by 0.05 ± 0.000" in note for note in found.notes)
-    assert found["boundary_friction"].interval_95 == pytest.approx(plain.interval_95, rel=0.02)
+    assert "ended at a bound" in str(found) and "neighbours uncorrelated" in str(found)
+    assert "boundary_friction ended at its bound 0.55: the data would move it further" in found.notes[0]
 
 
 def test_positions_count_from_either_end_however_far_the_zero_of_the_force_is_off(case, tmp_path):
@@ -86,20 +68,23 @@ def test_positions_count_from_either_end_however_far_the_zero_of_the_force_is_of
     found = sb.bench.fit_loop(path, case, free=["boundary_friction"])
     low, high = found["boundary_friction"].interval_95
     assert low < 0.5 < high < 1.6 * low and found.noise < 4 * NOISE
-    (zero,) = (float(each) for note in found.notes for each in re.findall(r"force is off by ([0-9.]+) ±", note))
-    assert zero == pytest.approx(0.06, abs=2e-3)
+    (off,) = filter(None, (re.search(r"force is off by ([0-9.]+) ± 0\.000", note) for note in found.notes))
+    assert float(off[1]) == pytest.approx(0.06, abs=2e-3)
     assert any("counted from the other end" in note for note in found.notes)
     assert not any("the other way" in note for note in found.notes)
 
 
-def test_a_loop_that_does_not_determine_its_inputs_says_so(capsys, case, tmp_path):
+@pytest.mark.parametrize(
+    "free", [("boundary_friction",), pytest.param(("boundary_friction", "roughness"), marks=pytest.mark.slow)]
+)
+def test_a_loop_that_does_not_determine_its_inputs_says_so(capsys, case, tmp_path, free):
     path = loop_of(tmp_path / "loop.csv", sb.load_case(case).contact, "time")
     head, *rows = path.read_text().splitlines()
     later = [f"{float(time) + 0.125:.7g},{friction}" for time, friction in (row.split(",") for row in rows)]
     path.write_text("\n".join([head, *later]))  # a quarter of a cycle
-    answer = call(capsys, "loop", path, case, "--json")
+    answer = call(capsys, "loop", path, case, "--free", *free, "--json")
     found = json.loads(answer.out)
-    assert {name for each in found["undetermined"] for name in each["names"]} == {"boundary_friction", "roughness"}
+    assert {name for each in found["undetermined"] for name in each["names"]} == set(free)
     for each in found["inputs"]:
         assert each["interval_95"] == [0, None]  # open
     assert any("'time' was read in seconds, as its header has no unit" in note for note in found["notes"])
