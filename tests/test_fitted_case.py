@@ -83,7 +83,7 @@ def written(folder, contact, tables):
     case.write_text(case_text(contact, **tables))
     contact = sb.load_case(case).contact
     speeds = np.geomspace(1e-3, 0.3, 3)
-    friction = sb.stribeck_curve(contact, speed=speeds, rtol=1e-5).friction
+    friction = sb.solve_batch(contact, speed=speeds, rtol=1e-5).friction.total
     data = folder / "data.csv"
     data.write_text("speed (m/s),friction\n" + "\n".join(f"{u},{mu}" for u, mu in zip(speeds, friction, strict=True)))
     return case, data, speeds, friction
@@ -96,7 +96,7 @@ def check_round_trip(capsys, folder, contact, tables, free):
     answer = call(capsys, "fit", data, case, "--free", *free, "--out", out, "--json")
     assert answer.code == 0, answer.err
     back = sb.load_case(out).contact
-    again = sb.stribeck_curve(back, speed=speeds, rtol=1e-5).friction
+    again = sb.solve_batch(back, speed=speeds, rtol=1e-5).friction.total
     np.testing.assert_allclose(again, friction, rtol=1e-4)
     for each in json.loads(answer.out)["inputs"]:
         assert math.isclose(getattr(back, each["name"]), each["value"], rel_tol=1e-8)
@@ -137,7 +137,7 @@ def test_the_preferred_model_of_several_files_is_a_case_that_solves_as_it_was_fi
         ({"law": sb.contact_laws.GreenwoodTripp(), "alpha": 1.0}, (), "the case of greenwood-tripp"),
     ):
         with subtests.test(truth=truth):
-            friction = sb.stribeck_curve(own.replace(**truth), speed=speeds, rtol=1e-6).friction
+            friction = sb.solve_batch(own.replace(**truth), speed=speeds).friction.total
             for name, rows in (("a.csv", slice(3)), ("b.csv", slice(3, None))):
                 lines = "\n".join(f"{u},{mu}" for u, mu in zip(speeds[rows], friction[rows], strict=True))
                 (tmp_path / name).write_text(f"speed (m/s),friction\n{lines}\n")
@@ -145,6 +145,6 @@ def test_the_preferred_model_of_several_files_is_a_case_that_solves_as_it_was_fi
             answer = call(capsys, "compare", *tokens, "--out", out, "--force")
             assert answer.code == 0 and said in answer.out, answer.err
             back = sb.load_case(out).contact
-            solved = sb.stribeck_curve(back, speed=speeds, rtol=1e-6).friction
+            solved = sb.solve_batch(back, speed=speeds).friction.total
             np.testing.assert_allclose(solved, friction, rtol=1e-3)
             assert "# Fitted by stribeck" in out.read_text() and " to a, b." in out.read_text()
