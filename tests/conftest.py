@@ -12,6 +12,7 @@ import pytest
 from hypothesis import settings
 
 import stribeck as sb
+from stribeck.checks.subject import Subject
 from stribeck.contact_laws.scaled import ShiftedLaw
 from stribeck.contacts.groups import contact_law
 from stribeck.equations.line import Equations, Operators
@@ -123,6 +124,14 @@ def _true_errors(solution):
 def true_errors():
     """Return the function that measures the errors of a solution on a finer and wider mesh."""
     return _true_errors
+
+
+@pytest.fixture
+def checks_trace_once(monkeypatch):
+    """Let the checks of all commands of a test share the curves that they trace of a contact."""
+    trace = Subject._curve_of
+    traced = cache(lambda contact, definition: trace(Subject(contact, definition=definition), contact))
+    monkeypatch.setattr(Subject, "_curve_of", lambda self, contact: traced(contact, self.definition))
 
 
 @pytest.fixture

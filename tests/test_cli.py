@@ -236,7 +236,7 @@ def test_a_curve_of_groups_takes_the_two_that_stay_fixed_and_finds_a_range_of_sp
     assert points["value"][0] < 1e-5 and points["fluid_load_share"][0] < 1e-5 and points["value"][-1] > 1e-2
 
 
-def test_where_the_law_is_beyond_its_range_every_output_says_so(capsys, tmp_path):
+def test_where_the_law_is_beyond_its_range_every_output_says_so(checks_trace_once, capsys, tmp_path):
     sentence = "The load group is 1.59, not below 1: the exponential contact law is outside its range"
     curve = ("curve", HEAVY, "--range", "1 m/s", "2 m/s", "--points", "2", "--rtol", "1e-2")
     files = ("-o", tmp_path / "curve.nc", "-o", tmp_path / "curve.csv", "--plot", tmp_path / "curve.svg")
@@ -464,13 +464,13 @@ def interrupted(pattern, times, *arguments):
 
 def test_ctrl_c_keeps_the_finished_points_marked_incomplete(tmp_path):
     files = [tmp_path / "curve.nc", tmp_path / "curve.csv"]
-    many = ("--points", "2000", "--cavitation", "exit", "--rtol", "1e-8")
-    shown, out = interrupted(r"[1-9]\d+/2000", 1, PDMS, *many, "-o", files[0], "-o", files[1])
+    many = ("--points", "400", "--cavitation", "exit", "--rtol", "1e-8")
+    shown, out = interrupted(r"[1-9]\d+/400", 1, PDMS, *many, "-o", files[0], "-o", files[1])
     found = opened(files[0])
     points = found.sizes["speed"]
-    assert 1 < points < 2000
-    assert f"Interrupted after {points} of 2000 points" in shown
-    assert (found.attrs["complete"], found.attrs["requested_points"]) == (0, 2000)
+    assert 1 < points < 400
+    assert f"Interrupted after {points} of 400 points" in shown
+    assert (found.attrs["complete"], found.attrs["requested_points"]) == (0, 400)
     assert np.isfinite(found.friction).all()
     assert f"\n# points: {points}\n" in files[1].read_text()
     assert f"{points} points, speed" in out
@@ -497,8 +497,8 @@ def interrupts():
 def test_a_limit_of_time_keeps_the_finished_points_also_in_a_background_job_that_ignores_ctrl_c(capsys, tmp_path, interrupts):
     interrupts(signal.SIG_IGN)
     file = tmp_path / "curve.csv"
-    many = "--points", "2000", "--rtol", "1e-10", "--cavitation", "exit"
-    answer = call(capsys, "curve", PDMS, *many, "--time-limit", "0.5 s", "-o", file)
+    many = "--points", "200", "--rtol", "1e-10", "--cavitation", "exit"
+    answer = call(capsys, "curve", PDMS, *many, "--time-limit", "0.2 s", "-o", file)
     if answer.code == 130:
         assert "Stopped by --time-limit after" in answer.err and file.exists()
     else:  # on a machine too busy for a first point

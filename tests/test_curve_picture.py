@@ -62,7 +62,7 @@ def test_picture_and_text_of_the_command_have_the_interval_of_the_errors(case, d
     assert drawn[0].axes[0].get_ylim()[1] > heights.max()
 
 
-def test_picture_and_text_of_the_command_say_what_check_says(drawn, capsys, tmp_path):
+def test_picture_and_text_of_the_command_say_what_check_says(checks_trace_once, drawn, capsys, tmp_path):
     options = ("--range", "0.4 m/s", "0.6 m/s", "--points", 2, "--rtol", "1e-2")
     [sentence] = [line for line in call(capsys, "check", HEAVY).out.splitlines() if "he model" in line][:1]
     for i, extra in enumerate([(), ("--no-notes",)]):

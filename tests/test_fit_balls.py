@@ -1,5 +1,7 @@
 """Fits of balls: exact on exact data, joint over loads and fluids, with intervals that cover, in files and commands."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from ball_data import BALL as TRUE
@@ -26,7 +28,12 @@ def measured(friction, values=SPEEDS, abscissa="speed", inputs=({},), error=None
 
 
 def frictions(contact, values=SPEEDS):
-    return np.asarray(sb.stribeck_curve(contact, speed=values, rtol=1e-4).friction)
+    return solved(contact, tuple(values.tolist())).copy()
+
+
+@cache
+def solved(contact, speeds):
+    return np.asarray(sb.stribeck_curve(contact, speed=np.array(speeds), rtol=1e-4).friction)
 
 
 @pytest.mark.slow

@@ -130,12 +130,12 @@ def test_what_is_no_law_is_refused(subtests):
 def test_a_curve_follows_any_law_and_names_it(subtests):
     for name, shape in laws().items():
         with subtests.test(name):
-            curve = sb.stribeck_curve(load=0.3, roughness=0.006, speed=(1e-5, 1.0), points=5, law=shape, beta=0.05)
-            assert curve.outcome.ok and len(curve) == 5
+            curve = sb.stribeck_curve(load=0.3, roughness=0.006, speed=(1e-2, 1.0), points=3, law=shape, beta=0.05)
+            assert curve.outcome.ok and len(curve) == 3
             assert curve.law is shape
-            middle = sb.solve(curve.solutions[2].groups, rtol=1e-8)
+            middle = sb.solve(curve.solutions[1].groups, rtol=1e-8)
             assert middle.law == shape.name
-            assert curve.friction[2] == pytest.approx(middle.friction(1.0, 0.05).total, rel=1e-5)
+            assert curve.friction[1] == pytest.approx(middle.friction(1.0, 0.05).total, rel=1e-5)
             assert curve.minimum is not None
             data = curve.to_dataset()
             assert data.attrs["contact_law"] == shape.name
