@@ -38,6 +38,8 @@ def test_a_batch_is_a_dataset_along_its_inputs(found):
     assert data.speed.dims == ("speed",) and data.speed.units == "m/s"
     np.testing.assert_array_equal(data.friction_balanced.sel(viscosity=0.05), np.asarray(found.friction)[1])
     assert (data.outcome == "CONVERGED").all() and data.central_film_thickness.units == "m"
+    assert data.attrs["input_load"] == CONTACT.load and data.attrs["contact_law"] == "exponential"
+    assert not {"input_speed", "input_viscosity", "speed_group"} & set(data.attrs)  # which vary
 
 
 def test_a_batch_shows_itself_draws_and_equals_itself(found):

@@ -11,7 +11,8 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.batches.states import Objects
-from stribeck.contacts.contact import Contact
+from stribeck.contact_laws.law import law_attributes
+from stribeck.contacts.contact import Contact, part_attributes
 from stribeck.contacts.friction import Definition, FrictionArray
 from stribeck.contacts.groups import Groups
 from stribeck.files.datasets import Column
@@ -21,7 +22,7 @@ from stribeck.quantities.outputs import COLUMNS, OUTPUT_TABLES, OutputTable
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError
 from stribeck.solver.base_solution import BaseSolution
-from stribeck.solver.numbers import columns_of_states, si_films
+from stribeck.solver.numbers import columns_of_states, constant_groups, input_attributes, si_films
 from stribeck.solver.point.solution import PointSolution
 
 
@@ -175,7 +176,19 @@ class BatchSolution(Exported, Shown, ByValue):
         for name in self.varied:
             dims, values = _along(self.dims, self.input(name))
             coords[name] = (dims, values, self.unit(name), name.replace("_", " "))
-        return columns, coords, {"title": "States of a lubricated rough contact", "rtol": self.rtol, "definition": "balanced"}
+        about = {"title": "States of a lubricated rough contact", "rtol": self.rtol, "definition": "balanced"}
+        return columns, coords, about | self._constant
+
+    @property
+    def _constant(self) -> dict[str, Any]:
+        """What is the same in all states."""
+        contacts = [] if self.contacts is None else self.contacts.ravel().tolist()
+        first, groups = contacts[0] if contacts else None, constant_groups(self.groups)
+        law, others = law_attributes(self.groups.law), [law_attributes(each.law) for each in contacts]
+        found = {name: value for name, value in law.items() if all(each.get(name) == value for each in others)}
+        found |= {"geometry": self.groups.geometry, **part_attributes(self.groups, first)}
+        kept = {name: value for name, value in found.items() if not name.endswith(tuple(f"_{each}" for each in self.varied))}
+        return kept | {f"{name}_group": each for name, each in groups.items()} | input_attributes(first, *self.varied)
 
     def input(self, name: str) -> Array:
         """Return an input of each state.

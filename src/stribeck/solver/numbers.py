@@ -254,5 +254,5 @@ def units_of_inputs(contact: Contact) -> dict[str, str]:
 
 def constant_groups(groups: Groups) -> dict[str, float]:
     """Return the groups that are the same in all states."""
-    arrays = {name: np.atleast_1d(getattr(groups, name)) for name in GROUPS}
+    arrays = {name: np.ravel(getattr(groups, name)) for name in GROUPS}
     return {name: float(each[0]) for name, each in arrays.items() if len(each) and np.ptp(each) <= 1e-12 * each[0]}
