@@ -154,7 +154,9 @@ def test_what_is_not_stated_is_refused(subtests, folder):
 
 
 def test_a_folder_without_the_file_or_an_unknown_model_is_refused(folder, capsys):
-    assert call(capsys, "experiment", folder / "none").code == 2
+    for path in (folder / "none", folder / "experiment.toml"):
+        answer = call(capsys, "experiment", path)
+        assert answer.code == 2 and "give the one that holds experiment.toml" in answer.err
     answer = call(capsys, "experiment", folder, "--model", "hihg")
     assert answer.code == 2 and "hihg" in answer.err
 

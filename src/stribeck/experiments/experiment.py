@@ -163,6 +163,8 @@ def load_experiment(folder: PathLike) -> Experiment:
         Where a file is missing or wrong, or an input has no source or no error.
     """
     path = path_of(folder)
+    if not path.is_dir():
+        raise InputError(f"folder = {show(str(path))} is no folder; give the one that holds {FILE}.")
     tables = read_toml(path / FILE)
     problems = [f"{key} is missing; say it in words." for key in ("title", "source", "licence", "data") if key not in tables]
     base = {name: table for name, table in tables.items() if name not in OWN_KEYS}
