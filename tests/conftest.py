@@ -126,12 +126,14 @@ def true_errors():
     return _true_errors
 
 
-@pytest.fixture
-def checks_trace_once(monkeypatch):
-    """Let the checks of all commands of a test share the curves that they trace of a contact."""
+@pytest.fixture(scope="module")
+def checks_trace_once():
+    """Let all checks of a module share the curves that they trace of a contact."""
     trace = Subject._curve_of
     traced = cache(lambda contact, definition: trace(Subject(contact, definition=definition), contact))
-    monkeypatch.setattr(Subject, "_curve_of", lambda self, contact: traced(contact, self.definition))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Subject, "_curve_of", lambda self, contact: traced(contact, self.definition))
+        yield
 
 
 @pytest.fixture

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from command_line import EXAMPLES, call, call_outside, case_text
+from command_line import EXAMPLES, call, case_text
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
@@ -157,18 +157,6 @@ def test_good_input_gets_past_the_checks(capsys, folder):
         answer = call(capsys, *tokens)
         assert answer.code == 1
         assert answer.err == "stribeck: this was not refused\n"
-
-
-# --- in a process of its own ---
-
-
-def test_a_tolerance_that_rounding_forbids_is_refused_with_that_sentence(folder):
-    # Known only after the solve, so that this one is not stopped before it.
-    tokens = ["solve", "--groups", "1e-12", "1", "0", "--rtol", "1e-9", "--plot", "new.png"]
-    answer = call_outside(*tokens, cwd=folder)
-    assert (answer.code, answer.out, answer.err.count("\n")) == (2, "", 1)
-    assert re.search(r"rtol = 1e-09 cannot be reached at .*Double precision keeps the error", answer.err)
-    assert not (folder / "new.png").exists()
 
 
 # --- nonsense ---

@@ -31,6 +31,8 @@ from command_line import (
 import stribeck as sb
 from stribeck import Outcome
 
+pytestmark = pytest.mark.usefixtures("checks_trace_once")
+
 GROUPS = ("--groups", "1e-4", "0.1", "1e-3")
 FAST = ("--groups", "0.1", "1e-3", "--range", "0.1", "1", "--points", "3")
 
@@ -236,7 +238,7 @@ def test_a_curve_of_groups_takes_the_two_that_stay_fixed_and_finds_a_range_of_sp
     assert points["value"][0] < 1e-5 and points["fluid_load_share"][0] < 1e-5 and points["value"][-1] > 1e-2
 
 
-def test_where_the_law_is_beyond_its_range_every_output_says_so(checks_trace_once, capsys, tmp_path):
+def test_where_the_law_is_beyond_its_range_every_output_says_so(capsys, tmp_path):
     sentence = "The load group is 1.59, not below 1: the exponential contact law is outside its range"
     curve = ("curve", HEAVY, "--range", "1 m/s", "2 m/s", "--points", "2", "--rtol", "1e-2")
     files = ("-o", tmp_path / "curve.nc", "-o", tmp_path / "curve.csv", "--plot", tmp_path / "curve.svg")
@@ -346,6 +348,14 @@ def test_a_curve_whose_path_is_lost_keeps_its_points_and_one_that_rounding_ends_
     said = r"stribeck: rtol = 1e-06 cannot be reached: .* speed is below 300 µm/s .*ask for a larger rtol\.\n"
     assert re.fullmatch(said, answer.err)
     assert os.listdir(tmp_path) == ["lost.nc"]
+
+
+def test_a_tolerance_that_rounding_forbids_is_refused_with_that_sentence(capsys, tmp_path):
+    # Known only after the solve, so that this one is not stopped before it.
+    answer = call(capsys, "solve", "--groups", "1e-12", "1", "0", "--rtol", "1e-9", "--plot", tmp_path / "new.png")
+    assert (answer.code, answer.out, answer.err.count("\n")) == (2, "", 1)
+    assert re.search(r"rtol = 1e-09 cannot be reached at .*Double precision keeps the error", answer.err)
+    assert os.listdir(tmp_path) == []
 
 
 @pytest.mark.quick

@@ -11,6 +11,8 @@ from matplotlib.figure import Figure
 
 import stribeck as sb
 
+pytestmark = pytest.mark.usefixtures("checks_trace_once")
+
 ERROR = 0.2
 SIGMA = math.sqrt(math.log1p(ERROR**2))
 """Relative error of the dry friction below, and that of its logarithm: where asperities carry all, it is friction's too."""
@@ -62,7 +64,7 @@ def test_picture_and_text_of_the_command_have_the_interval_of_the_errors(case, d
     assert drawn[0].axes[0].get_ylim()[1] > heights.max()
 
 
-def test_picture_and_text_of_the_command_say_what_check_says(checks_trace_once, drawn, capsys, tmp_path):
+def test_picture_and_text_of_the_command_say_what_check_says(drawn, capsys, tmp_path):
     options = ("--range", "0.4 m/s", "0.6 m/s", "--points", 2, "--rtol", "1e-2")
     [sentence] = [line for line in call(capsys, "check", HEAVY).out.splitlines() if "he model" in line][:1]
     for i, extra in enumerate([(), ("--no-notes",)]):
