@@ -10,7 +10,7 @@ import pytest
 
 FOLDER = Path(__file__).parents[1] / "examples"
 EXAMPLES = sorted(FOLDER.glob("*.py"))
-FAST = {"film_that_ends", "force_balance", "formula_against_solver", "one_state", "stribeck_curve", "surface_to_contact_law"}
+FAST = {"force_balance", "formula_against_solver", "one_state", "stribeck_curve", "surface_to_contact_law"}
 """The others take seconds each."""
 
 EACH = pytest.mark.parametrize(
