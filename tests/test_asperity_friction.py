@@ -99,7 +99,7 @@ def test_a_ball_rubs_by_its_real_area():
 
 def test_a_curve_has_the_friction_of_its_states_and_its_least(seal):
     contact = seal.replace(shear_stress=TAU, speed_exponent=0.1)
-    curve = sb.stribeck_curve(contact, speed=(0.1, 2.0), points=3)
+    curve = sb.stribeck_curve(contact, speed=(0.3, 1.0), points=3)
     for i in (0, 2):
         state = sb.solve(contact.replace(speed=curve.values[i]), rtol=1e-9)
         allowed = state.friction.error + curve.friction.error[i]
@@ -112,8 +112,8 @@ def test_a_curve_has_the_friction_of_its_states_and_its_least(seal):
     # The curvature shows that the slope vanishes there: both sides are alike.
     assert abs(above - below) < 0.1 * (above + below - 2 * at)
     assert least.friction == pytest.approx(at, rel=1e-6)
-    assert curve.to_dataset().attrs["asperity_friction"] == "shear-stress"
-    assert math.isnan(curve.to_dataset().attrs["boundary_friction"])
+    said = curve.to_dataset().attrs
+    assert said["asperity_friction"] == "shear-stress" and math.isnan(said["boundary_friction"])
 
 
 def test_a_batch_rubs_as_its_states_do(seal):
