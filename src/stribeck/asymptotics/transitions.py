@@ -210,7 +210,7 @@ def has_minimum(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.
     """
     boundary_friction, beta = coefficient("boundary_friction", boundary_friction), coefficient("beta", beta)
     if checked_word("form", form, get_args(Form)) == "uniform":
-        return np.isfinite(_film_ratio(groups, boundary_friction, beta))
+        return np.isfinite(_film_ratio(groups, boundary_friction, beta, 0))
     return np.asarray(weakening_number(groups, boundary_friction, beta) < MAX_WEAKENING)
 
 
@@ -285,17 +285,17 @@ def _speed(film_ratio: Value, kappa: Value) -> Value:
     return speed
 
 
-def _last(holds: Callable[[Array], Flags], low: Array, high: Array) -> Array:
+def _last(holds: Callable[[Array], Flags], low: Array, high: Array, bisections: int = BISECTIONS) -> Array:
     """Return up to where something holds that does at ``low`` and does not at ``high``."""
-    for _ in range(BISECTIONS):
+    for _ in range(bisections):
         middle = (low + high) / 2
         there = holds(middle)
         low, high = np.where(there, middle, low), np.where(there, high, middle)
     return low
 
 
-def _film_ratio(groups: Groups, boundary_friction: float, beta: float) -> Value:
-    """Return the film ratio at which the uniform law has its minimum, nan where it has none."""
+def _film_ratio(groups: Groups, boundary_friction: float, beta: float, bisections: int = BISECTIONS) -> Value:
+    """Return the film ratio at which the uniform law has its minimum, nan where it has none, as no bisections tell too."""
     load, given = np.broadcast_arrays(groups.load, groups.relative_roughness)
     kappa = np.clip(given, *FINITE_SPEED_ROUGHNESS)
 
@@ -311,7 +311,7 @@ def _film_ratio(groups: Groups, boundary_friction: float, beta: float) -> Value:
     last = SEARCH_POINTS - 1 - np.argmax(falling[::-1], axis=0)
     found = falling.any(axis=0) & (last < SEARCH_POINTS - 1) & (kappa == given)
     low = np.minimum(last, SEARCH_POINTS - 2)
-    return np.where(found, np.exp(_last(falls, ratios[low], ratios[low + 1])), np.nan)[()]
+    return np.where(found, np.exp(_last(falls, ratios[low], ratios[low + 1], bisections)), np.nan)[()]
 
 
 def _uniform_merging(load: Value, boundary_friction: float, beta: float) -> Value:
@@ -320,7 +320,7 @@ def _uniform_merging(load: Value, boundary_friction: float, beta: float) -> Valu
 
     def falls(log_kappa: Array) -> Flags:
         groups = Groups(1.0, load, load * np.exp(log_kappa))
-        return np.isfinite(_film_ratio(groups, boundary_friction, beta))
+        return np.isfinite(_film_ratio(groups, boundary_friction, beta, 0))
 
     inside = falls(low) & ~falls(high)
     return np.where(inside, load * np.exp(_last(falls, low, high)), np.nan)[()]
