@@ -206,7 +206,7 @@ def test_a_case_names_the_file_and_says_how_well_it_was_followed(capsys, tmp_pat
     case = sb.load_case(tmp_path / "case.toml")
     assert case.contact.modulus == pytest.approx(RELAXED / 0.75, rel=1e-4, abs=0)
     assert case.contact.solid.moduli == pytest.approx((2.0, 1.0), rel=1e-3, abs=0)
-    said = call(capsys, "check", tmp_path / "case.toml").out
+    said = call(capsys, "solve", tmp_path / "case.toml", "-v").out
     assert "Prony series of 2 terms" in said and "modulus = 2 MPa" in said
     (tmp_path / "own.toml").write_text(text.replace("[contact]", '[contact]\nmodulus = "3 MPa"'))
     assert sb.load_case(tmp_path / "own.toml").contact.modulus == 3e6

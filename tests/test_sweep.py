@@ -377,10 +377,10 @@ def test_workers_that_die_again_and_again_end_the_sweep_with_a_sentence(tmp_path
 
 @contextmanager
 def small_disk(folder, kind):
-    """Give a disk that holds a hundred states, where one is wanted and the system lets us mount it."""
+    """Give a disk that holds some fifty states, where one is wanted and the system lets us mount it."""
     mounted = (
         kind == "mounted"
-        and subprocess.run(["mount", "-t", "tmpfs", "-o", "size=600k", "none", folder], capture_output=True).returncode == 0
+        and subprocess.run(["mount", "-t", "tmpfs", "-o", "size=320k", "none", folder], capture_output=True).returncode == 0
     )
     try:
         yield mounted
@@ -397,7 +397,7 @@ def test_a_full_disk_is_a_sentence_and_the_store_opens_and_goes_on(tmp_path, wor
     """Where no disk can or shall be mounted, the system refuses to let any file grow once there are some states."""
     disk = tmp_path / "disk"
     disk.mkdir()
-    file, store = write(tmp_path, RANDOM.format(kind="sobol", points=128)), disk / "store"
+    file, store = write(tmp_path, RANDOM.format(kind="sobol", points=64)), disk / "store"
     with small_disk(disk, kind) as mounted:
         process = start(file, store, "--workers", str(workers))
         try:
@@ -416,12 +416,12 @@ def test_a_full_disk_is_a_sentence_and_the_store_opens_and_goes_on(tmp_path, wor
             err,
         )
         found = sb.open_sweep(store)
-        assert 0 < found.finished < 128
+        assert 0 < found.finished < 64
         assert found.outcomes == {"CONVERGED": found.finished}
         larger = tmp_path / "larger"
         shutil.copytree(disk, larger)
     again = sb.sweep(file, larger / "store")
-    assert (again.finished, again.computed) == (128, 128 - found.finished)
+    assert (again.finished, again.computed) == (64, 64 - found.finished)
     assert os.listdir(larger) == ["store"]
 
 
