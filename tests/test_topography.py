@@ -216,14 +216,14 @@ def test_an_uneven_line_may_miss_as_much_as_a_map(tmp_path):
 
 def test_what_is_left_out_below_the_heights_is_said(subtests, tmp_path):
     """A footer, a mean or another table may be part of the scan: all faces say that it was not read."""
-    heights = synthetic_topography(SelfAffine(1e-6, 2e4, 3e6, 0.8, 1e5), (64, 64), 1e-6, 5).heights
+    heights = synthetic_topography(SelfAffine(1e-6, 2e4, 3e6, 0.8, 1e5), (40, 40), 1e-6, 5).heights
     matrix = "\n".join(" ".join(f"{v * 1e9:.4f}" for v in row) for row in heights)
     points = "\n".join(["x (um);y (um);z (nm)", *(f"{x:g};{y:g};{z * 1e9:.4f}" for x, y, z in grid_rows(heights, 1))])
     for body, options in ((matrix, {"unit": "nm", "spacing": "1 um"}), (points, {})):
         last = body.count("\n") + 1
         mark = ";" if body is points else " "
         of_points = ["5", "Sa;0.41;nm\nSq;0.5;nm"] if body is points else []
-        statistics = (mark.join(row.split()) for row in ("Sa 0.41", "Sq 0.5 nm", "mean 5", f"Max.: {' 3' * 64}", "Ra[um] 1"))
+        statistics = (mark.join(row.split()) for row in ("Sa 0.41", "Sq 0.5 nm", "mean 5", f"Max.: {' 3' * 40}", "Ra[um] 1"))
         footers = "end of data", "mean\n5", "Sa;Sq\n1;2\n3;4"
         for footer in (*footers, *statistics, *of_points):
             with subtests.test(first=body[:8], footer=footer):
