@@ -122,6 +122,7 @@ def cheapest_levers(
 ) -> tuple[Lever, ...]:
     """Return the two inputs that lower friction by a fifth with the smallest change, with the friction that is then solved."""
     slopes = {name: sensitivities[name] for name in DESIGN_INPUTS if sensitivities.get(name)}
+    slopes |= {name: slopes[name] + sensitivities.get("beta", 0.0) for name in slopes if follows_surface(contact, {name})}
     steps = {name: math.log(WANTED_RATIO) / slope for name, slope in slopes.items()}
     near = [name for name, step in steps.items() if abs(step) < math.log(MAX_FACTOR)]
     found: dict[str, Lever] = {}
