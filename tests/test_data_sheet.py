@@ -221,7 +221,7 @@ def test_errors_of_a_contact_on_a_layer_move_the_layer_in_hertz_units_too():
     found = sb.propagate(contact, {"modulus": error}, transitions=False)
     reach = math.exp(1.96 * math.sqrt(math.log1p(error**2)))
     for name, function in (
-        ("central_gap", lambda each: sb.solve(each, rtol=1e-5).central_gap * each.hertz.indentation),
+        ("central_film_thickness", lambda each: sb.solve(each, rtol=1e-5).central_gap * each.hertz.indentation),
         ("friction", lambda each: sb.solve(each, rtol=1e-5).friction().total),
     ):
         ends = sorted(function(contact.replace(modulus=contact.modulus * factor)) for factor in (1 / reach, reach))
@@ -417,6 +417,7 @@ def test_films_at_rest_have_the_errors_of_their_inputs_and_friction_that_of_aspe
     found = sb.propagate(contact, {"roughness": 0.05, "boundary_friction": 0.1}, transitions=False)
     ends = [contact.replace(roughness=contact.roughness * math.exp(end)) for end in (-0.05, 0.05)]
     low, high = (sb.solve(each).central_gap * each.hertz.indentation for each in ends)
-    assert found["central_gap"].interval_68 == pytest.approx((low, high), rel=0.02)
+    assert found["central_film_thickness"].interval_68 == pytest.approx((low, high), rel=0.02)
     assert found["friction"].interval_68 == pytest.approx((0.7 * math.exp(-0.1), 0.7 * math.exp(0.1)), rel=0.02)
     assert found.to_si()["friction"] == pytest.approx(TRUE.boundary_friction)
+    assert found["friction"].label == "friction coefficient, balanced" and found.to_dict()["definition"] == "balanced"

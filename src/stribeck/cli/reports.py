@@ -230,7 +230,7 @@ def _main_table(found: Overview) -> list[str]:
     rows = [(each.label, *each.texts) for each in numbers if not each.label.startswith(OF_THE_SENTENCE)]
     if found.errors is not None:
         spreads = {each.label: each.texts for each in found.errors.spreads}
-        rows = [(label, *spreads.get(label.partition(", ")[0], (value, ""))) for label, value, _ in rows]
+        rows = [(label, *spreads.get(label, (value, ""))) for label, value, _ in rows]
     minimum = found.curve.minimum
     if minimum is not None:
         where, friction_there = mark_texts(found.curve, minimum)

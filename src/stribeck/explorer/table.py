@@ -66,10 +66,9 @@ class Row:
 
 def numbers(answer: Answer) -> list[Row]:
     """Return the numbers of the state with their intervals, and the nearest transitions."""
-    spread, films = answer.spread, {row.name: row.film for row in answer.solution.outputs.rows if row.film}
-    known = {} if spread is None else {each.name: _plain(each.texts[1]) for each in spread.spreads}
-    names = {films.get(name, name): text for name, text in known.items()}
-    names[f"friction_{answer.inputs.case.definition}"] = known.get("friction", "")
+    spread = answer.spread
+    names = {} if spread is None else {each.name: _plain(each.texts[1]) for each in spread.spreads}
+    names[f"friction_{answer.inputs.case.definition}"] = names.get("friction", "")
     rows = state_rows(answer.solution, answer.inputs.case.definition)
     return [*(replace(row, interval=names.get(row.key, "")) for row in rows), *_transition_rows(answer)]
 

@@ -141,15 +141,16 @@ def propagate(
     dry, viscous, friction = rubbing * states[asperities.observable], shearing * states["viscous"], friction_of(states)
     given = solution.friction(definition=definition)
     labels = {row.name: row.label for row in solution.outputs.rows}
+    films = {row.name: row.film for row in solution.outputs.rows}
     spreads = [
-        _spread("friction", "friction coefficient", given.total, friction),
+        _spread("friction", f"friction coefficient, {definition}", given.total, friction),
         _spread("contact_load_share", labels["contact_load_share"], solution.contact_load_share, share),
         _spread("fluid_load_share", labels["fluid_load_share"], solution.fluid_load_share, 1 - share),
     ]
     height = scale(lambda each: each.hertz.indentation)
     for name in films_of(groups.geometry):
         value = float(getattr(solution, name)) * contact.hertz.indentation
-        spreads.append(_spread(name, labels[name], value, states[name] * height, "length"))
+        spreads.append(_spread(films[name], labels[name], value, states[name] * height, "length"))
     if contact.roughness > 0:
         ratio = states["minimum_gap"] * height / scale(lambda each: each.roughness)
         spreads.append(_spread("lambda_ratio", labels["lambda_ratio"], solution.lambda_ratio, ratio))
@@ -170,6 +171,7 @@ def propagate(
         contributions={name: part / total for name, part in sorted(parts.items(), key=lambda pair: -pair[1])},
         method=method,
         notes=notes,
+        definition=definition,
     )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction import Definition
 from stribeck.contacts.inputs import follows_surface
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.quantities.formats import format_percent, format_share, format_si
@@ -83,6 +84,7 @@ class Uncertainty(Exported, Told):
         tuple[str, ...],
         "where the interval of friction is less sure than 5 % of its width, and why, a sentence each; else empty",
     ] = ()
+    definition: Annotated[Definition, "definition of the viscous friction"] = "balanced"
 
     def __getitem__(self, name: str) -> Spread:
         """Return the spread of a name."""
@@ -111,6 +113,7 @@ class Uncertainty(Exported, Told):
             "regime_probabilities": self.regimes,
             "contributions": self.contributions,
             "method": self.method,
+            "definition": self.definition,
             "notes": list(self.notes),
         }
 
@@ -130,8 +133,8 @@ class Uncertainty(Exported, Told):
         about = {f"probability_{name}": part for name, part in self.regimes.items()}
         about |= {f"error_{name}": error for name, error in self.errors.items()}
         about |= {f"share_{name}": part for name, part in self.contributions.items()}
-        title = {"title": "Propagated errors of a state", "method": self.method, "notes": "\n".join(self.notes)}
-        return columns, names, title | about
+        title = {"title": "Propagated errors of a state", "method": self.method, "definition": self.definition}
+        return columns, names, title | {"notes": "\n".join(self.notes)} | about
 
     def _card(self) -> Card:
         rows = [("with errors of the inputs", "value", "95 %"), *((each.label, *each.texts) for each in self.spreads)]
