@@ -87,4 +87,4 @@ def test_a_number_that_is_written_says_what_it_is(subtests, capsys):
 @pytest.mark.quick
 def test_measurements_over_a_number_per_length_have_its_unit(written):
     pytest.importorskip("xarray")
-    assert read(written("Hersey number [1/m]")).to_dataset()["hersey_per_length"].attrs["units"] == "m-1"
+    assert read(written("Hersey number [1/m]")).to_dataset()["hersey_per_length"].attrs["units"] == "1/m"
