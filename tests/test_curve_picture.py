@@ -58,7 +58,9 @@ def test_picture_and_text_of_the_command_have_the_interval_of_the_errors(case, d
     heights = band.get_paths()[0].vertices[:, 1]
     assert normal_width(band.get_label(), heights.min(), heights.max()) == pytest.approx(1, abs=0.05)
     head, low, high = re.search(
-        r"with errors of the inputs +value +(\S+ %).*?friction coefficient +\S+ +(\S+) to (\S+)", answer.out, re.DOTALL
+        r"with errors of the inputs +value +(\S+ %).*?friction coefficient, balanced +\S+ +(\S+) to (\S+)",
+        answer.out,
+        re.DOTALL,
     ).groups()
     assert normal_width(head, float(low), float(high)) == pytest.approx(1, abs=0.05)
     assert drawn[0].axes[0].get_ylim()[1] > heights.max()
