@@ -222,7 +222,7 @@ def test_what_is_left_out_below_the_heights_is_said(subtests, tmp_path):
     for body, options in ((matrix, {"unit": "nm", "spacing": "1 um"}), (points, {})):
         last = body.count("\n") + 1
         mark = ";" if body is points else " "
-        of_points = ["5", "Sa;0.41;nm\nSq;0.5;nm"] if body is points else []
+        of_points = ["5", "Sa;0.41;nm\nSq;0.5;nm", "filter;0.8;mm"] if body is points else []
         statistics = (mark.join(row.split()) for row in ("Sa 0.41", "Sq 0.5 nm", "mean 5", f"Max.: {' 3' * 40}", "Ra[um] 1"))
         footers = "end of data", "mean\n5", "Sa;Sq\n1;2\n3;4"
         for footer in (*footers, *statistics, *of_points):
