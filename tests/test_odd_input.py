@@ -215,6 +215,7 @@ REFUSED = {
     "speed = '1 mm/s'": lambda: sb.solve_batch(GROUPS, speed="1 mm/s"),
     "on_progress = True; it must be a function": lambda: sb.solve_batch(GROUPS, on_progress=True),
     "problem = 'typo'; it must be a LineContact": lambda: sb.phase_diagram("typo"),
+    "Groups(speed, load, roughness); give the contact of the case, case.contact.": lambda: sb.solve(sb.load_case(PDMS)),
     "errors = None; it must be a mapping": lambda: sb.propagate(CONTACT, None),
     "errors is empty": lambda: sb.propagate(CONTACT, {}),
     "resolution = 0 is not a positive number": lambda: sb.surfaces.power_spectrum(SCAN, resolution=0),

@@ -227,7 +227,8 @@ def as_groups(problem: Groups | Contact) -> tuple[Groups, Contact | None]:
         return problem.groups, problem
     if not isinstance(problem, Groups):
         raise InputError(
-            f"problem = {show(problem)}; it must be a LineContact, PointContact or Groups(speed, load, roughness)."
+            f"problem = {show(problem)}; it must be a LineContact, PointContact or Groups(speed, load, roughness)"
+            + ("; give the contact of the case, case.contact." if hasattr(problem, "contact") else ".")
         )
     if problem.shape != ():
         raise InputError(f"groups have shape {problem.shape}; solve takes one state, use stribeck_curve for many.")
