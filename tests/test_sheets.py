@@ -9,9 +9,7 @@ import pytest
 from command_line import EXAMPLES, call, case_text
 
 import stribeck as sb
-from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.fluids import presets
-from stribeck.regimes.advice import cheapest_levers
 
 FACTS = (
     *("pressure_coefficient", "layer_thickness", "loss_tangent", "supply_film", "thinning_rate", "molecular_size"),
@@ -120,16 +118,6 @@ def test_a_lever_lowers_friction_by_a_fifth_when_solved(content):
         changed = getattr(contact, name) * float(factor) ** {"x": 1, "/": -1}[sign]
         given = float(value) if dimension == "number" else value
         assert getattr(contact.replace(**{name: given}), name) == pytest.approx(changed, rel=0.01)
-
-
-def test_a_lever_of_a_surface_takes_beta_along():
-    """With beta kept in the step and not in the solve, roughness was to fall by a fifth, and friction fell by 31 %."""
-    seal = sb.load_case(EXAMPLES / "rod_seal.toml").contact
-    state, slopes = friction_sensitivities(seal)
-    levers = {each.name: each for each in cheapest_levers(seal, state.friction().total, slopes, "balanced", 1e-6)}
-    roughness = levers["roughness"]
-    changes = {"roughness": roughness.value, "beta": roughness.factor * seal.beta}
-    assert sb.solve(seal.replace(**changes)).friction().total == pytest.approx(0.8 * state.friction().total, rel=0.02)
 
 
 def test_the_pdf_and_a_contact_outside(tmp_path, capsys, monkeypatch):

@@ -7,6 +7,7 @@ import json
 import math
 import re
 import tomllib
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -24,8 +25,6 @@ from stribeck.surfaces import (
     power_spectrum,
     synthetic_topography,
 )
-from stribeck.surfaces.departures import moment
-from stribeck.surfaces.measured_spectrum import line_density
 
 STEP = 1e-6
 FUNDAMENTAL = 2 * math.pi / 128e-6
@@ -70,11 +69,11 @@ def test_one_wave_has_all_its_power_in_its_ring():
 
 
 def test_the_spectrum_along_a_line_is_the_integral_across_it():
-    surface = SelfAffine(1e-6, 1e4, 1e13, 0.2, 3e4)
+    wide = replace(fitted(ROLLED, (64, 64), 1), roughness=SelfAffine(1e-6, 1e4, 1e13, 0.2, 3e4))
     k = np.geomspace(1e-2, 1e12, 400_001)
     for q in (3e3, 2e4, 1e5):
-        across = np.trapezoid(k * surface.spectrum.at(np.hypot(q, k)), np.log(k))
-        assert line_density(np.array(q), surface) == pytest.approx(2 * across, rel=1e-5, abs=0)
+        across = np.trapezoid(k * wide.at(np.hypot(q, k), noise=False), np.log(k))
+        assert wide.at(q, is_line=True, noise=False) == pytest.approx(2 * across, rel=1e-5, abs=0)
 
 
 def test_reliable_wavelengths_end_at_the_scan_and_at_the_instrument():
@@ -496,9 +495,8 @@ def test_heights_of_peaks_or_valleys_are_found_skewed(subtests):
 def test_the_error_of_the_skewness_is_that_of_gaussian_surfaces():
     scores = []
     for seed in range(12):
-        rough = synthetic_topography(SelfAffine(1e-6, FUNDAMENTAL, 3e6, 0.8, 9 * FUNDAMENTAL), (64, 64), STEP, seed)
-        skewness, error = moment(detrended(rough)[0].heights, 3)
-        scores.append(skewness / error)
+        found = analyse(synthetic_topography(SelfAffine(1e-6, FUNDAMENTAL, 3e6, 0.8, 9 * FUNDAMENTAL), (64, 64), STEP, seed))
+        scores.append(found.departures.skewness / found.departures.skewness_error)
     assert 0.6 < np.std(scores) < 1.5
 
 
