@@ -12,7 +12,6 @@ import pytest
 from hypothesis import settings
 
 import stribeck as sb
-from stribeck.checks.subject import Subject
 from stribeck.contact_laws.scaled import ShiftedLaw
 from stribeck.contacts.groups import contact_law
 from stribeck.equations.line import Equations, Operators
@@ -124,16 +123,6 @@ def _true_errors(solution):
 def true_errors():
     """Return the function that measures the errors of a solution on a finer and wider mesh."""
     return _true_errors
-
-
-@pytest.fixture(scope="module")
-def checks_trace_once():
-    """Let all checks of a module share the curves that they trace of a contact."""
-    trace = Subject._curve_of
-    traced = cache(lambda contact, definition: trace(Subject(contact, definition=definition), contact))
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Subject, "_curve_of", lambda self, contact: traced(contact, self.definition))
-        yield
 
 
 @pytest.fixture

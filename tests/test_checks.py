@@ -17,8 +17,6 @@ from stribeck.contact_laws import FiniteSurface
 from stribeck.numerics.dual import with_slope
 from stribeck.surfaces import SelfAffine, persson_law
 
-pytestmark = pytest.mark.usefixtures("checks_trace_once")
-
 STEEL = sb.LineContact(
     radius="10 mm",
     youngs_modulus="210 GPa",

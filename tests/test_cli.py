@@ -31,8 +31,6 @@ from command_line import (
 import stribeck as sb
 from stribeck import Outcome
 
-pytestmark = pytest.mark.usefixtures("checks_trace_once")
-
 GROUPS = ("--groups", "1e-4", "0.1", "1e-3")
 FAST = ("--groups", "0.1", "1e-3", "--range", "0.1", "1", "--points", "3")
 

@@ -11,8 +11,6 @@ from matplotlib.figure import Figure
 
 import stribeck as sb
 
-pytestmark = pytest.mark.usefixtures("checks_trace_once")
-
 ERROR = 0.2
 SIGMA = math.sqrt(math.log1p(ERROR**2))
 """Relative error of the dry friction below, and that of its logarithm: where asperities carry all, it is friction's too."""

@@ -51,8 +51,6 @@ from stribeck.regimes.margins import regime_margins
 from stribeck.solids import Prony
 from stribeck.solver.numbers import report_rows
 
-pytestmark = pytest.mark.usefixtures("checks_trace_once")
-
 START = server.example()
 BALL = choices.choose(START, "geometry", "point")
 EXPLORER = Path(server.__file__).parent
