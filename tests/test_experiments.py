@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from command_line import call, case_text
+from command_line import call, case_text, fit_settings
 from fit_data import TRUE, exact, measured, noisy
 
 import stribeck as sb
@@ -42,6 +42,11 @@ def test_dry_friction_is_measured_slowly_and_the_errors_come_true(found):
     rows = measured(np.append(data.values, run.speed), friction, error=friction * alone.noise)
     again = sb.fit(rows, TRUE, free=["boundary_friction"], intervals=False)
     assert again["boundary_friction"].standard_error == pytest.approx(run.errors["boundary_friction"], rel=0.05)
+
+
+def settled(tmp_path, **settings):
+    """Return a case with settings of its fit."""
+    return sb.Case(path=tmp_path / "case.toml", contact=TRUE, fit=fit_settings(settings))
 
 
 def test_another_load_costs_more(found):
@@ -111,6 +116,36 @@ def test_the_criterion_of_a_comparison_is_that_of_akaike_for_small_samples(found
     assert second.difference == pytest.approx(second.aicc - first.aicc) and first.weight + second.weight == pytest.approx(1)
     assert f"{second.name}: AICc {second.aicc:.1f}, difference" in repr(comparison)
     assert repr(comparison).splitlines()[0].endswith(comparison.sentence)
+
+
+def test_a_prior_is_no_evidence_for_a_model(tmp_path):
+    """Inputs that a prior holds are no rows: the criterion is that of the residuals."""
+    prior = {"beta": {"value": TRUE.beta, "factor": 1.01}, "boundary_friction": {"value": 0.7, "factor": 1.01}}
+    case = settled(tmp_path, free=["boundary_friction", "roughness"], priors=prior)
+    data = noisy(11, rows=12)
+    [each] = sb.compare(data, case, models={"own": {"free": ("beta",)}}).candidates
+    square = float(np.sum(np.log(each.fit.friction / data.friction) ** 2))
+    assert each.aicc == pytest.approx(12 * math.log(square / 12) + 2 * 4 + 2 * 4 * 5 / 7, abs=0.01)
+
+
+def test_too_few_rows_to_judge_the_fitted_numbers_are_refused():
+    rows, free = noisy(11, rows=5), ("boundary_friction", "roughness")
+    found = sb.compare(rows, TRUE, models={"plain": {}, "free": {"free": ("beta",)}}, free=free)
+    assert found.sentence == "Only plain could be fitted."
+    assert found.failed["free"].startswith("5 rows are too few to judge 4 fitted numbers, the noise counting as one; give 6")
+
+
+def test_an_outlier_does_not_steer_the_comparison_of_robust_fits(tmp_path):
+    """With errors given, how far the outlier lies is no evidence either."""
+    case, differences = settled(tmp_path, robust=True), []
+    data = noisy(11, noise=0.02, rows=12)
+    for factor in (3, 30):
+        friction = np.where(np.arange(12) == 5, factor, 1) * data.friction
+        rows = measured(data.values, friction, error=0.02 * data.friction)
+        models = {"own": {}, "smaller": {"beta": 0.8 * TRUE.beta}}
+        laws = {each.name: each.aicc for each in sb.compare(rows, case, models=models).candidates}
+        differences.append(laws["smaller"] - laws["own"])
+    assert differences[0] == pytest.approx(differences[1], abs=1)
 
 
 @pytest.fixture(scope="module")

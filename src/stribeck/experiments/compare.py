@@ -177,13 +177,19 @@ def compare(
         except (InputError, SolveError) as why:
             failed[name] = str(why)
             continue
-        if each.outcome.ok or each.outcome.name == "AT_BOUND":
-            found[name] = each
-        else:
+        fewest = _fitted_numbers(each) + 2
+        if not each.outcome.ok:
             failed[name] = each.outcome.value
+        elif len(rows) < fewest:
+            failed[name] = (
+                f"{len(rows)} rows are too few to judge {fewest - 2} fitted numbers, the noise counting as one; give {fewest} "
+                "rows or more, or free fewer inputs."
+            )
+        else:
+            found[name] = each
     if not found:
         raise InputError(f"nothing could be fitted: {show(failed)}")
-    criteria = {name: _aicc(each, len(each.inputs)) for name, each in found.items()}
+    criteria = {name: _aicc(each) for name, each in found.items()}
     least = min(criteria.values())
     weights = {name: math.exp(-(value - least) / 2) for name, value in criteria.items()}
     total = sum(weights.values())
@@ -241,16 +247,20 @@ def _laws(contact: Contact) -> dict[str, AsperityLaw | None]:
     return laws | {"greenwood-williamson": GreenwoodWilliamson(), "greenwood-tripp": GreenwoodTripp()}
 
 
-def _aicc(found: Fit, inputs: int) -> float:
-    """Return the corrected information criterion, the noise counting as fitted where it was."""
-    n = len(found.data)
-    if math.isnan(found.noise):
-        k = inputs
-        deviance = float(found.residuals @ found.residuals)
-    else:
-        k = inputs + 1
-        deviance = n * math.log(found.noise**2 * max(n - inputs, 1) / n)
-    return deviance + 2 * k + 2 * k * (k + 1) / max(n - k - 1, 1)
+def _fitted_numbers(found: Fit) -> int:
+    """Return how many numbers were fitted: the inputs, and the noise where it was not given."""
+    return len(found.inputs) + (not math.isnan(found.noise))
+
+
+def _aicc(found: Fit) -> float:
+    """Return the corrected information criterion of rows two more than the fitted numbers at the least."""
+    n, k = len(found.data), _fitted_numbers(found)
+    deviance = float(found._minimum.objective.loss(found.residuals).sum())
+    if found.robust and not math.isnan(found.noise):
+        deviance += n * math.log(found.noise**2)
+    elif not math.isnan(found.noise):  # the noise of the largest likelihood is the root of the mean square
+        deviance = n * math.log(found.noise**2 * deviance / n)
+    return deviance + 2 * k + 2 * k * (k + 1) / (n - k - 1)
 
 
 def write_preferred_case(comparison: Comparison, case: Case, path: PathLike, *, force: bool = False) -> str:
