@@ -49,6 +49,22 @@ def settled(tmp_path, **settings):
     return sb.Case(path=tmp_path / "case.toml", contact=TRUE, fit=fit_settings(settings))
 
 
+def test_a_plan_begins_from_the_errors_of_the_fit_and_takes_a_run_to_be_as_accurate_as_its_rows(tmp_path, subtests):
+    data = noisy(11, rows=12)
+    too_small = measured(data.values, data.friction, error=0.005 * data.friction)  # the noise is 4 %
+    one_off = measured(data.values, np.where(np.arange(12) == 3, 2, 1) * data.friction)
+    for rows, settings, noise in (
+        (too_small, {}, (0.02, 0.08)),
+        (data, {"relative_error": 0.1}, (0.1 - 1e-9, 0.1 + 1e-9)),
+        (one_off, {"robust": True}, (0.02, 0.08)),
+    ):
+        with subtests.test(settings=settings):
+            known = sb.fit(rows, settled(tmp_path, **settings), free=["boundary_friction", "roughness"], intervals=False)
+            plan = sb.next_runs(known, 1, speeds=["1 mm/s"], loads=[TRUE.load])
+            assert plan.before == pytest.approx({each.label: each.standard_error for each in known.inputs}, rel=0.01)
+            assert noise[0] < plan.noise < noise[1]
+
+
 def test_another_load_costs_more(found):
     dear = sb.next_runs(found, 1, cost={"load": 1e6})
     assert dear.runs[0].load == pytest.approx(TRUE.load)

@@ -22,6 +22,7 @@ from stribeck.contacts.friction_rules import RULES
 from stribeck.curves.sensitivities import atlas_sensitivities, friction_sensitivities
 from stribeck.files.datasets import Column
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
+from stribeck.fits.intervals import information_of
 from stribeck.fits.result import Fit
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.formats import format_percent, format_si
@@ -152,8 +153,7 @@ def next_runs(
     prices = DEFAULT_COST | dict(cost or {})
     if set(prices) != set(DEFAULT_COST) or min(prices.values()) < 0 or prices["point"] <= 0:
         raise InputError(f"cost = {show(cost)}; it may hold {', '.join(DEFAULT_COST)}, each zero or positive, point positive.")
-    noise = _noise(fit)
-    information = _information(fit)
+    information, noise = _known(fit)
     places = _places(fit, speeds, loads, viscosities)
     rows: list[tuple[str, Contact, Array, float]] = []
     for i, (curve, contact) in enumerate(places):
@@ -190,21 +190,11 @@ def next_runs(
     return Plan(tuple(chosen), before, noise, scanned, dimension)
 
 
-def _noise(fit: Fit) -> float:
-    """Return the relative standard error of a row."""
-    if fit.data.error is not None:
-        return float(np.median(fit.data.error / fit.data.friction))
-    if math.isfinite(fit.noise):
-        return fit.noise if fit.logarithmic else fit.noise / float(np.median(fit.friction))
-    return float(np.median(np.abs((fit.friction - fit.data.friction) / fit.data.friction))) or 0.01
-
-
-def _information(fit: Fit) -> Array:
-    """Return the information of the data and priors on the logarithms of the inputs."""
-    at = fit._minimum
-    priors, _ = at.objective.priors
-    found = at.jacobian.T @ at.jacobian + priors.T @ priors
-    return np.asarray(found + np.eye(len(fit.inputs)) / PRIOR_LOG_ERROR**2)
+def _known(fit: Fit) -> tuple[Array, float]:
+    """Return the information on the logarithms of the inputs, and the relative standard error of a row, as the fit judges."""
+    information, inflation = information_of(fit._minimum)
+    noise = float(np.median(fit._minimum.relative_noise)) * math.sqrt(inflation)
+    return information / inflation + np.eye(len(fit.inputs)) / PRIOR_LOG_ERROR**2, noise
 
 
 def _places(

@@ -21,7 +21,7 @@ from stribeck.fits.least_squares import Minimum, effective_parameters, minimise,
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["Ends", "covariance_of", "ends_of"]
+__all__ = ["Ends", "covariance_of", "ends_of", "information_of"]
 
 LEVELS = (0.682689492137086, 0.95)  # Probabilities of the two intervals
 
@@ -62,6 +62,19 @@ class Ends:
     high: float
 
 
+def information_of(at: Minimum) -> tuple[Array, float]:
+    """Return the information of data and priors on the logarithms, and the factor by which errors inflate its inverse."""
+    rows, _ = at.objective.priors
+    psi, slope = at.objective.influence(at.residuals)
+    freedom = max(len(at.residuals) - effective_parameters(at), 1.0)
+    # Huber's sandwich for the robust loss, with averages over the rows so that no weight is negative.
+    weight = max(float(slope.mean()), 0.1) if at.objective.robust else 1.0
+    given = at.objective.sigma is not None
+    excess = excess_of(float(at.residuals @ at.residuals), freedom) if given else 1.0
+    inflation = float((psi @ psi) / freedom / weight) if at.objective.robust else excess
+    return weight * (at.jacobian.T @ at.jacobian) + rows.T @ rows, inflation
+
+
 def covariance_of(at: Minimum) -> tuple[Array, list[float], float]:
     """Return the covariance of the logarithms, the squared quantiles of the two levels, and how much the loss inflates them.
 
@@ -70,17 +83,10 @@ def covariance_of(at: Minimum) -> tuple[Array, list[float], float]:
     from scipy.stats import norm, t
 
     free = np.nonzero(np.logical_not(at.at_bound))[0]
-    rows, _ = at.objective.priors
-    psi, slope = at.objective.influence(at.residuals)
-    n, p = at.jacobian.shape
-    J, P = at.jacobian[:, free], rows[:, free]
-    freedom = max(n - effective_parameters(at), 1.0)
-    # Huber's sandwich for the robust loss, with averages over the rows so that no weight is negative.
-    weight = max(float(slope.mean()), 0.1) if at.objective.robust else 1.0
-    given = at.objective.sigma is not None
-    excess = excess_of(float(at.residuals @ at.residuals), freedom) if given else 1.0
-    inflation = float((psi @ psi) / freedom / weight) if at.objective.robust else excess
-    values, vectors = np.linalg.eigh(weight * (J.T @ J) + P.T @ P)
+    information, inflation = information_of(at)
+    p = len(information)
+    freedom = max(len(at.residuals) - effective_parameters(at), 1.0)
+    values, vectors = np.linalg.eigh(information[np.ix_(free, free)])
     seen = values > NOTHING * max(float(values.max(initial=0.0)), 1e-300)
     inner = (vectors[:, seen] / values[seen]) @ vectors[:, seen].T * inflation
     lost = (np.abs(vectors[:, ~seen]) > 1e-6).any(axis=1)
@@ -88,7 +94,7 @@ def covariance_of(at: Minimum) -> tuple[Array, list[float], float]:
     inner[lost, lost] = np.inf
     covariance = np.full((p, p), np.nan)
     covariance[np.ix_(free, free)] = inner
-    known = given and excess == 1 and not at.objective.robust
+    known = at.objective.sigma is not None and inflation == 1 and not at.objective.robust
     quantiles = [float((norm.ppf(0.5 + level / 2) if known else t.ppf(0.5 + level / 2, freedom)) ** 2) for level in LEVELS]
     return covariance, quantiles, inflation
 
