@@ -65,6 +65,20 @@ def test_a_plan_begins_from_the_errors_of_the_fit_and_takes_a_run_to_be_as_accur
             assert noise[0] < plan.noise < noise[1]
 
 
+def test_a_sample_with_an_input_of_its_own_is_a_run_worth_measuring(tmp_path):
+    speeds, friction = exact(rows=8)
+    _, rough = exact(TRUE.replace(roughness="1.4 um"), rows=8)
+    both = np.append(friction, rough[:3]) * np.exp(0.02 * np.random.default_rng(0).standard_normal(11))
+    data = measured(np.append(speeds, speeds[:3]), both, curve=[0] * 8 + [1] * 3, curves=("smooth", "rough"), inputs=({}, {}))
+    own = settled(tmp_path, free=["boundary_friction", "roughness"], per_curve=["roughness"])
+    plan = sb.next_runs(sb.fit(data, own, intervals=False), 1)
+    [run] = plan.runs  # the sample of three slow rows
+    assert run.curve == "rough" and run.errors["roughness (rough)"] < 0.5 * plan.before["roughness (rough)"]
+    assert {each.curve for each in plan.scanned} == {"smooth", "rough"}
+    assert "1    rough  " in str(plan)
+    assert "smooth, " in plan.plot().legends[0].get_texts()[0].get_text()
+
+
 def test_another_load_costs_more(found):
     dear = sb.next_runs(found, 1, cost={"load": 1e6})
     assert dear.runs[0].load == pytest.approx(TRUE.load)

@@ -74,11 +74,14 @@ class Plan(Exported, Told):
     load_dimension: Annotated[str, "kind of the load, of a cylinder or a ball"] = "load"
 
     def _card(self) -> Card:
-        table = [("run", "speed", "load", "viscosity", "friction", "gain", "cost", "standard errors after it")]
+        curves = len({each.curve for each in self.scanned}) > 1
+        setting = *["curve"] * curves, "speed", "load", "viscosity"
+        table: list[tuple[str, ...]] = [("run", *setting, "friction", "gain", "cost", "standard errors after it")]
         for i, each in enumerate(self.runs, 1):
-            place = format_si(each.speed, "speed"), format_si(each.load, self.load_dimension)
+            fluid = format_si(each.viscosity, "viscosity")
+            place = *[each.curve] * curves, format_si(each.speed, "speed"), format_si(each.load, self.load_dimension), fluid
             numbers = f"{each.friction:.3g}", f"{each.gain:.2g}", f"{each.cost:.3g}"
-            table.append((str(i), *place, format_si(each.viscosity, "viscosity"), *numbers, _percents(each.errors)))
+            table.append((str(i), *place, *numbers, _percents(each.errors)))
         noise = f"a run is assumed to be accurate to {format_percent(self.noise)}"
         now = "now", f"standard errors {_percents(self.before)}; {noise}"
         return Card(f"{len(self.runs)} runs worth measuring, the best first", [now], (), table)
@@ -214,13 +217,15 @@ def _places(
         tried = np.geomspace(low / SPEED_MARGIN, high * SPEED_MARGIN, CANDIDATE_SPEEDS).tolist()
     if any(not values for values in given.values() if values is not None) or min(tried) <= 0:
         raise InputError("speeds, loads and viscosities must hold at least one value, and speeds be positive.")
-    states: dict[tuple[float, float], tuple[str, Contact]] = {}
-    for name, contact in zip(fit.data.curves, fit.contacts, strict=True):
+    states: dict[tuple[Contact, tuple[bool, ...]], tuple[str, Contact]] = {}  # Curves alike in all that is fitted are one
+    for i, (name, contact) in enumerate(zip(fit.data.curves, fit.contacts, strict=True)):
+        own = tuple(each.acts_on(i) for each in fit._minimum.objective.model.free)
         first = contact is fit.contacts[0]
         own_loads = given["load"] or ([contact.load * f for f in LOAD_RATIOS] if first else [contact.load])
         for load in own_loads:
             for viscosity in given["viscosity"] or [contact.viscosity]:
-                states.setdefault((load, viscosity), (name, contact.replace(load=load, viscosity=viscosity)))
+                there = contact.replace(load=load, viscosity=viscosity)
+                states.setdefault((there, own), (name, there))
     return [(name, contact.replace(speed=speed)) for name, contact in states.values() for speed in tried]
 
 

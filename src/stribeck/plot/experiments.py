@@ -35,14 +35,16 @@ def plot_comparison(comparison: Comparison, *, ax: Axes | None = None, title: st
 
 @style.picture()
 def plot_plan(plan: Plan, *, ax: Axes | None = None, title: str = "") -> Figure:
-    """Draw the gain of a first run over the speed, a line for each load and viscosity, the chosen runs marked."""
+    """Draw the gain of a first run over the speed, a line for each curve, load and viscosity, the chosen runs marked."""
     inside = ax is not None
     figure, (ax,) = new_figure((7.0, 4.4), [], title=title or "What to measure next", ax=ax)
     colours = [each for each in SERIES if each != MARK]
-    keys = list(dict.fromkeys((each.load, each.viscosity) for each in plan.scanned))
-    for i, (load, viscosity) in enumerate(keys):
-        mine = [each for each in plan.scanned if (each.load, each.viscosity) == (load, viscosity)]
-        label = f"{format_si(load, plan.load_dimension)}, {format_si(viscosity, 'viscosity').replace('*', '·')}"
+    keys = list(dict.fromkeys((each.curve, each.load, each.viscosity) for each in plan.scanned))
+    several = len({curve for curve, _, _ in keys}) > 1
+    for i, (curve, load, viscosity) in enumerate(keys):
+        mine = [each for each in plan.scanned if (each.curve, each.load, each.viscosity) == (curve, load, viscosity)]
+        fluid = format_si(viscosity, "viscosity").replace("*", "·")
+        label = ", ".join([*[curve] * several, format_si(load, plan.load_dimension), fluid])
         ax.plot([e.speed for e in mine], [e.gain for e in mine], color=colours[i % 5], lw=1.8, label=label)
     for i, each in enumerate(plan.runs, 1):
         ax.axvline(each.speed, color=MARK, lw=1, ls=(0, (4, 2)))
