@@ -3,28 +3,11 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from stribeck.quantities.schema import Input
-from stribeck.quantities.units import InputError, show
-
-_TURNS = re.compile(r"hz|1\s*/\s*s\b|s\s*\^?\s*-1|s⁻¹", re.IGNORECASE)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Rotation(Input):
-    """An angular velocity, whose text must say whether it counts turns or radians."""
-
-    dimension: str = "rotation"
-
-    def checked(self, value: Any) -> float:
-        """Return a value in SI units, or refuse one out of bounds, or in a unit that people use for both."""
-        if isinstance(value, str) and _TURNS.search(value):
-            raise InputError(f"{self.name} = {show(value)} may mean turns or radians per second; write it in rpm or rad/s.")
-        return super().checked(value)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -171,7 +154,7 @@ FORMS = (
     Form(
         of="speed",
         inputs=(
-            Rotation(name="rotational_speed", label="rotational speed", typical="1500 rpm"),
+            Input(name="rotational_speed", label="rotational speed", dimension="rotation", typical="1500 rpm"),
             Input(name="shaft_diameter", label="diameter of the shaft", dimension="length", typical="30 mm"),
         ),
         value=lambda omega, diameter: omega * diameter / 2,

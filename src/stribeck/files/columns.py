@@ -36,7 +36,6 @@ IN_WORDS = {"time": "seconds", "length": "metres"}  # SI units of columns that m
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
 
 _MASS = re.compile(r"(?:[mk]?g|gram|gr|lb)f?")
-_TURNS = re.compile(r"(?:r\.?p\.?m\.?|rev(?:olutions)?/min|U/min|1/min|/min|min\^?[-−]1|min⁻¹)", re.IGNORECASE)
 _TURNS_PER_SECOND = re.compile(r"(?:rps|rev/s|U/s|1/s|Hz|s\^?[-−]1|s⁻¹)")
 
 _STATED = re.compile(
@@ -66,8 +65,6 @@ def si_factor(unit: str, dimension: str, name: str) -> float:
     text = unit.strip()
     if dimension == "force" and _MASS.fullmatch(text):
         return {"m": 1e-6, "k": 1.0, "l": 0.45359237}.get(text[0], 1e-3) * STANDARD_GRAVITY
-    if dimension == "rotation" and _TURNS.fullmatch(text):
-        return 2 * math.pi / 60
     if dimension == "rotation" and _TURNS_PER_SECOND.fullmatch(text):
         return 2 * math.pi
     if dimension == "viscosity":
@@ -93,7 +90,8 @@ class Column:
         """Return the headers that may be it; of several those with a unit of its dimension, or that are preferred."""
         names = [name for name in dict.fromkeys(table.header) if name and is_called_or_signed(name, self.pattern)]
         if len(names) > 1:
-            names = [name for name in names if has_dimension(table.unit(name), self.dimension)]
+            units = self.units or ()
+            names = [name for name in names if table.unit(name) in units or has_dimension(table.unit(name), self.dimension)]
         for pattern in self.preferred:
             names = [name for name in names if len(names) > 1 and is_called_or_signed(name, pattern)] or names
         return names

@@ -118,6 +118,8 @@ _PERCENT = re.compile(r"\s*([0-9]{1,9}(?:\.[0-9]{0,9})?)\s*%\s*")
 _ROUGHNESS = re.compile(r"R[aq](?![A-Za-z])", re.IGNORECASE)
 _HARDNESS = re.compile(r"shore|irhd", re.IGNORECASE)
 FROM_HARDNESS = "write shore_a = 70 or shore_d = 50, a bare number, in place of the modulus"
+# Turns per minute
+_TURNS = re.compile(r"(?:r\.?p\.?m\.?|rev(?:olutions)?/min|[rU]/min|1? ?/ ?min|min\^?[-−]1|min⁻¹)", re.IGNORECASE)
 _EXPONENT = re.compile(r"(?:\^|\*\*)\s*(?:[+-]?[0-9]|\(\s*[+-]?[0-9]\s*\))")
 _UNIT = re.compile(r"(?:1 ?/)?[A-Za-zµμÅ_#()*/ ]*", re.ASCII)
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
@@ -239,9 +241,9 @@ def _from_text(text: str, kind: Dimension, name: str) -> Fraction:
 
 def _factor(unit: str, kind: Dimension, received: str) -> Fraction:
     """Return the exact SI value of one ``unit``, or raise the sentence that begins with ``received``."""
+    unit = "rpm" if _TURNS.fullmatch(unit) and kind.unit == "rad/s" else re.sub(r"\bRPM\b", "rpm", unit)
     unit = re.sub(r"(⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)", lambda found: "^" + found[1].translate(_SUPERSCRIPTS), unit)
     unit = re.sub(r"(?<=[A-Za-z])[-−](?=[1-4](?![0-9]))", "^-", unit)  # as in mm s-1
-    unit = re.sub(r"\bRPM\b", "rpm", unit)
     unit = re.sub(r"\b([nuµμmck]?N)-?([cm]?m)\b", r"\1*\2", unit) if kind.unit == "N*m" else unit
     unit = re.sub(r"(?<=[A-Za-z])\s*[.·⋅]\s*(?=[A-Za-z])", "*", unit)
     for power, known in kind.steps.items():
@@ -273,6 +275,8 @@ def _factor(unit: str, kind: Dimension, received: str) -> Fraction:
         message = f"{received} is {_noun(found, base)}; expected {kind.noun} such as '{kind.example}'"
         hint = _HINTS.get((found or "", kind.unit))
         raise InputError(f"{message}: {hint}." if hint else f"{message}.")
+    if kind.unit == "rad/s" and "radian" not in str(base):
+        raise InputError(f"{received} may mean turns or radians; write it in rpm or rad/s.")
     if kind.unit == "1/s" and "radian" in str(base):
         raise InputError(f"{received} is an angular velocity; expected how often in a time, such as '2 Hz' or '120 1/min'.")
     return Fraction(factor)
