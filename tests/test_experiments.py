@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from command_line import call, case_text, fit_settings
+from command_line import EXAMPLES, call, case_text, fit_settings
 from fit_data import TRUE, exact, measured, noisy
 
 import stribeck as sb
@@ -156,6 +156,14 @@ def test_a_prior_is_no_evidence_for_a_model(tmp_path):
     [each] = sb.compare(data, case, models={"own": {"free": ("beta",)}}).candidates
     square = float(np.sum(np.log(each.fit.friction / data.friction) ** 2))
     assert each.aicc == pytest.approx(12 * math.log(square / 12) + 2 * 4 + 2 * 4 * 5 / 7, abs=0.01)
+
+
+def test_the_finite_surface_that_is_compared_is_that_of_the_scan_of_the_contact():
+    law = sb.load_case(EXAMPLES / "rod_seal.toml").contact.law
+    scanned = TRUE.replace(law=law, **law.coefficients)
+    found = sb.compare(measured(*exact(scanned, low=3e-3, rows=5)), scanned, free=("boundary_friction",))
+    laws = [each.fit.contact.law for each in found.candidates]
+    assert found.candidates[0].name == "persson" and sb.contact_laws.FiniteSurface(law.alpha, law) in laws and len(laws) == 4
 
 
 def test_too_few_rows_to_judge_the_fitted_numbers_are_refused():

@@ -370,3 +370,8 @@ def test_a_column_slips_and_carries_what_integrals_across_it_say(subtests):
             assert np.abs(rate @ weights - slip).max() <= 3e-7 * largest.max()
             assert (np.hypot(*(rate @ weights - slip)) <= 3e-7 * largest).all()
             assert (np.hypot(*(rate @ (weights * zeta) - flow.carried)) <= 3e-7 * largest).all()
+
+
+def test_between_smooth_surfaces_roughness_changes_no_flow():
+    flow, gap = sb.Groups(1e-3, 0.1, 0.0).model.film.flow, np.array([1e-3, 1.0])
+    np.testing.assert_array_equal((flow.pressure(gap), flow.shear(gap)), ((1, 1), (0, 0)))

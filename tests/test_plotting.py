@@ -235,6 +235,13 @@ def test_notes_stand_in_a_caption_of_the_colour_of_the_text_and_stay_away_if_not
         assert "outside its range," not in without and "stribeck 0." in without
 
 
+def test_a_state_that_did_not_converge_says_so_in_its_picture(solution):
+    failed = sb.solve(sb.Groups(1e-9, 0.5, 0.0), rtol=1e-11, on_failure="return")  # rounding leaves fewer digits
+    for state in (failed, solution):
+        said = words(picture(state))
+        assert (failed.outcome.value[:40] in said) == ("not converged" in said) == (state is failed)
+
+
 def test_the_contact_itself_is_marked_where_it_lies(subtests):
     for kind in ["over speed", "over load", "over roughness"]:
         with subtests.test(kind=kind):

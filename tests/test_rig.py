@@ -5,6 +5,7 @@ The layouts are made from public descriptions of ball-on-disc (mini traction mac
 
 import functools
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -141,7 +142,8 @@ def test_repeats_become_error_bars(read):
     assert found.friction == pytest.approx([mu * s.mean() for mu, s in zip(FRICTIONS, scatters, strict=True)])
     pooled = math.sqrt(np.mean([(s / s.mean()).var(ddof=1) for s in scatters]))
     assert found.error == pytest.approx(pooled * found.friction / math.sqrt(5), rel=1e-6)
-    assert any("20 rows at 4 speeds put together" in note for note in found.notes)
+    [note] = [note for note in found.notes if "20 rows at 4 speeds put together" in note]
+    assert re.search(r"the scatter of repeats, \S+ % of a single row, became the error of each mean", note)
     assert "'step' as run" in found.taken
     apart = read(ball_on_disc(steps=5), columns={"friction": "Traction Coeff"}, repeats=False)
     assert len(apart) == 20 and apart.error is None
