@@ -81,7 +81,7 @@ def test_a_fit_and_a_comparison_say_how_far_they_are(capsys, monkeypatch, tmp_pa
     monkeypatch.setattr("stribeck.cli.progress.LINE_INTERVAL", 0.0)
     data, case = tmp_path / "data.csv", tmp_path / "case.toml"
     case.write_text(case_text({}, fit={"free": '["boundary_friction"]'}))
-    data.write_text("speed (mm/s),friction\n0.1,0.6\n1,0.5\n3,0.4\n10,0.2\n")
+    data.write_text("speed (mm/s),friction\n0.1,0.6\n0.3,0.55\n1,0.5\n3,0.4\n10,0.2\n")
     for command, last in (("fit", "intervals"), ("compare", r"greenwood-tripp: \w+")):
         answer = call(capsys, command, data, case)
         lines = [line for line in answer.err.splitlines() if line.startswith("stribeck: ")]

@@ -171,6 +171,10 @@ def test_too_few_rows_to_judge_the_fitted_numbers_are_refused():
     found = sb.compare(rows, TRUE, models={"plain": {}, "free": {"free": ("beta",)}}, free=free)
     assert found.sentence == "Only plain could be fitted."
     assert found.failed["free"].startswith("5 rows are too few to judge 4 fitted numbers, the noise counting as one; give 6")
+    with pytest.raises(
+        sb.InputError, match=r"^nothing could be fitted: 5 rows .*; give 6 rows or more, or free fewer inputs\.$"
+    ):
+        sb.compare(rows, TRUE, models={"one": {}, "other": {"beta": 0.05}}, free=(*free, "beta"))
 
 
 def test_an_outlier_does_not_steer_the_comparison_of_robust_fits(tmp_path):

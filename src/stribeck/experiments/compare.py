@@ -188,7 +188,7 @@ def compare(
         else:
             found[name] = each
     if not found:
-        raise InputError(f"nothing could be fitted: {show(failed)}")
+        raise InputError(f"nothing could be fitted: {' '.join(dict.fromkeys(failed.values()))}")
     criteria = {name: _aicc(each) for name, each in found.items()}
     least = min(criteria.values())
     weights = {name: math.exp(-(value - least) / 2) for name, value in criteria.items()}
