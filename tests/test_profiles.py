@@ -243,6 +243,7 @@ CONTACT = {
 def test_the_cylinder_as_a_profile_is_the_radius_to_the_bit():
     by_radius = sb.LineContact(radius="10 mm", **CONTACT)
     by_profile = sb.LineContact(profile=sb.profiles.Cylinder("10 mm"), **CONTACT)
+    assert by_profile.profile.gap(1e-4) == pytest.approx(0.5e-6) and by_profile.profile.slope(1e-4) == pytest.approx(0.01)
     assert by_profile.groups == by_radius.groups
     assert by_profile.radius == by_radius.radius
     assert sb.solve(by_profile).friction() == sb.solve(by_radius).friction()
