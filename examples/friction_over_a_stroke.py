@@ -23,6 +23,11 @@ def main():
     return sb.stroke(case.contact, case.stroke.motion, cavitation="exit", steps=160)
 
 
+def plot(found):
+    """Draw the whole stroke."""
+    return found.plot()
+
+
 def animation(found):
     """Return the animation of friction over position, and of the film over time."""
     from matplotlib import pyplot as plt
@@ -51,4 +56,4 @@ if __name__ == "__main__":
     found = main()
     print(found)
     animation(found).save("friction_over_a_stroke.gif", writer="pillow")
-    found.plot("friction_over_a_stroke_loop.png", force=True)
+    plot(found).savefig("friction_over_a_stroke_loop.png")
