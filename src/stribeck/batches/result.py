@@ -177,10 +177,10 @@ class BatchSolution(Exported, Shown, ByValue):
             dims, values = _along(self.dims, self.input(name))
             coords[name] = (dims, values, self.unit(name), name.replace("_", " "))
         about = {"title": "States of a lubricated rough contact", "rtol": self.rtol, "definition": "balanced"}
-        return columns, coords, about | self._constant
+        return columns, coords, about | self._shared_attributes
 
     @property
-    def _constant(self) -> dict[str, Any]:
+    def _shared_attributes(self) -> dict[str, Any]:
         """What is the same in all states."""
         contacts = [] if self.contacts is None else self.contacts.ravel().tolist()
         first, groups = contacts[0] if contacts else None, constant_groups(self.groups)

@@ -62,8 +62,8 @@ class Ends:
     high: float
 
 
-def information_of(at: Minimum) -> tuple[Array, float]:
-    """Return the information of data and priors on the logarithms, and the factor by which errors inflate its inverse."""
+def information_of(at: Minimum) -> tuple[Array, float, float]:
+    """Return the information on the logarithms, the factor by which errors inflate its inverse, and the degrees of freedom."""
     rows, _ = at.objective.priors
     psi, slope = at.objective.influence(at.residuals)
     freedom = max(len(at.residuals) - effective_parameters(at), 1.0)
@@ -72,7 +72,7 @@ def information_of(at: Minimum) -> tuple[Array, float]:
     given = at.objective.sigma is not None
     excess = excess_of(float(at.residuals @ at.residuals), freedom) if given else 1.0
     inflation = float((psi @ psi) / freedom / weight) if at.objective.robust else excess
-    return weight * (at.jacobian.T @ at.jacobian) + rows.T @ rows, inflation
+    return weight * (at.jacobian.T @ at.jacobian) + rows.T @ rows, inflation, freedom
 
 
 def covariance_of(at: Minimum) -> tuple[Array, list[float], float]:
@@ -83,9 +83,8 @@ def covariance_of(at: Minimum) -> tuple[Array, list[float], float]:
     from scipy.stats import norm, t
 
     free = np.nonzero(np.logical_not(at.at_bound))[0]
-    information, inflation = information_of(at)
+    information, inflation, freedom = information_of(at)
     p = len(information)
-    freedom = max(len(at.residuals) - effective_parameters(at), 1.0)
     values, vectors = np.linalg.eigh(information[np.ix_(free, free)])
     seen = values > NOTHING * max(float(values.max(initial=0.0)), 1e-300)
     inner = (vectors[:, seen] / values[seen]) @ vectors[:, seen].T * inflation
