@@ -28,6 +28,7 @@ WINDOW_RATIO = 1.4  # Rows of a fit over those of the next smaller one.
 FITTED = 3  # Coefficients of a fit.
 MEDIAN_OF_RESIDUALS = 0.693  # Median over mean of the squared residuals of fits through the fewest rows.
 STANDARD_ERRORS = 2.0  # Standard errors that are stated of a fit.
+SAFETY_FACTOR = 1.5  # Of the error of the most certain fit: 1 in 20 waved pressures exceeds it (test_film_of_pressure.py).
 OUTLIER_RATIO = 3.0  # Residual over the median one from which a row loses weight.
 OUTLIER_ROUNDS = 5  # Rounds of weighting.
 
@@ -123,9 +124,11 @@ class DryPressure:
             # The steepest of many fits is steep by noise too: where it is the steepest at the least.
             sigmas = max(STANDARD_ERRORS, math.sqrt(2 * math.log(len(x) / n))) * fits.deviation
             sigmas = sigmas * np.sqrt(np.maximum(noise.at(np.square(fits.pressure)), np.median(fits.residual)))
-            at = int(np.where(fits.middle >= zone, fits.slope - sigmas, -math.inf).argmax())
-            if fits.middle[at] >= zone and fits.slope[at] > 0:
-                found.append((float(fits.slope[at]), float(sigmas[at])))
+            beyond = np.maximum(fits.middle, zone)
+            slopes, sigmas = (np.interp(beyond, fits.middle, each) for each in (fits.slope, sigmas))
+            at = int((slopes - sigmas).argmax())
+            if fits.middle[-1] >= zone and slopes[at] > 0:
+                found.append((float(slopes[at]), float(sigmas[at])))
         if not found:
             return 0.0, 0.0
         best, error = _most_certain(found)
@@ -166,7 +169,7 @@ def _windows(rows: int, fewest: int = MIN_ROWS) -> list[int]:
 
 
 def _most_certain(found: list[tuple[float, float]]) -> tuple[int, float]:
-    """Return which of several values with errors is the most certain, and its error with what the next smaller fit changes.
+    """Return which of several values with errors is the most certain, and its error with what two smaller fits change.
 
     They are of fits of more and more rows, of which those after the first that contradicts a smaller one are too long.
     """
@@ -176,10 +179,12 @@ def _most_certain(found: list[tuple[float, float]]) -> tuple[int, float]:
         low, high = max(low, value - error), min(high, value + error)
         if low > high:
             break
-        beside = found[i - 1 if i else min(1, len(found) - 1)][0]
-        errors.append(error + abs(value - beside) / (1 - WINDOW_RATIO**-2))  # of a truncation that goes as the square of rows
+        others = range(max(i - 2, 0), i) or range(1, len(found))[:1]  # Two, for one may agree by luck.
+        # The truncation goes as the square of the rows.
+        truncations = [abs(value - found[j][0]) / (1 - WINDOW_RATIO ** (-2 * abs(i - j))) for j in others]
+        errors.append(error + max(truncations, default=0.0))
     best = int(np.argmin(errors))
-    return best, errors[best]
+    return best, SAFETY_FACTOR * errors[best]
 
 
 class _Fits(NamedTuple):

@@ -209,8 +209,9 @@ def film_of_pressure(
     -----
     k is fitted to the square of the pressure, which is smooth at the edge, over the number of rows whose error is the least;
     p'max likewise, beyond two inlet lengths from the edge.  The error of the table is that of these fits, by their residuals
-    and by what a smaller fit gives.  The error of the edge law falls as the inlet length, as :math:`\lambda^{2/5}`; with an
-    exit, a parabola's film is thicker by 1.6 % at speed group 1e-3.  Its range ends there at 0.012.
+    and by what two smaller fits give, with a safety factor of 1.5.  The error of the edge law falls as the inlet length, as
+    :math:`\lambda^{2/5}`; with an exit, a parabola's film is thicker by 1.6 % at speed group 1e-3.  Its range ends there at
+    0.012.
 
     Source: ours, and Blok's inverse theory; ``test_film_of_pressure.py``.
     """
