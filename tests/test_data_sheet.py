@@ -60,7 +60,17 @@ def test_a_data_sheet_becomes_a_contact(sheet):
 def test_turns_per_minute_are_rpm_however_they_are_written_and_a_bare_rate_is_none(subtests):
     """As in files of rigs; 1/min once counted radians, 6.3 times slower."""
     kept = {"shaft_diameter": "30 mm", "speed": None}
-    for text in ("1500 rpm", "1500 1/min", "1500/min", "1500 min^-1", "1500 min-1", "1500 min⁻¹", "1500 U/min", "1500 r/min"):
+    for text in (
+        "1500 rpm",
+        "1500 1/min",
+        "1500/min",
+        "1500 min^-1",
+        "1500 min-1",
+        "1500 min⁻¹",
+        "1500 U/min",
+        "1500 rev/min",
+        "25 rev/s",
+    ):
         with subtests.test(text=text):
             assert TRUE.replace(**kept, rotational_speed=text).speed == pytest.approx(25 * math.pi * 0.03, rel=1e-12)
     for text in ("25 1/s", "25 Hz", "0.025 kHz", "90000 1/h", "25 cps"):

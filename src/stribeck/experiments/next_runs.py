@@ -84,7 +84,9 @@ class Plan(Exported, Told):
             table.append((str(i), *place, *numbers, _percents(each.errors)))
         noise = f"a run is assumed to be accurate to {format_percent(self.noise)}"
         now = "now", f"standard errors {_percents(self.before)}; {noise}"
-        return Card(f"{len(self.runs)} runs worth measuring, the best first", [now], (), table)
+        several = len(self.runs) > 1
+        headline = f"{len(self.runs)} runs worth measuring, the best first" if several else "The run most worth measuring"
+        return Card(headline, [now], (), table)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the runs and the errors before and after them, ready for JSON."""

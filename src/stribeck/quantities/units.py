@@ -119,7 +119,7 @@ _ROUGHNESS = re.compile(r"R[aq](?![A-Za-z])", re.IGNORECASE)
 _HARDNESS = re.compile(r"shore|irhd", re.IGNORECASE)
 FROM_HARDNESS = "write shore_a = 70 or shore_d = 50, a bare number, in place of the modulus"
 # Turns per minute
-_TURNS = re.compile(r"(?:r\.?p\.?m\.?|rev(?:olutions)?/min|[rU]/min|1? ?/ ?min|min\^?[-−]1|min⁻¹)", re.IGNORECASE)
+_TURNS = re.compile(r"(?:r\.?p\.?m\.?|[rU]/min|1? ?/ ?min|min\^?[-−]1|min⁻¹)", re.IGNORECASE)
 _EXPONENT = re.compile(r"(?:\^|\*\*)\s*(?:[+-]?[0-9]|\(\s*[+-]?[0-9]\s*\))")
 _UNIT = re.compile(r"(?:1 ?/)?[A-Za-zµμÅ_#()*/ ]*", re.ASCII)
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
@@ -242,6 +242,7 @@ def _from_text(text: str, kind: Dimension, name: str) -> Fraction:
 def _factor(unit: str, kind: Dimension, received: str) -> Fraction:
     """Return the exact SI value of one ``unit``, or raise the sentence that begins with ``received``."""
     unit = "rpm" if _TURNS.fullmatch(unit) and kind.unit == "rad/s" else re.sub(r"\bRPM\b", "rpm", unit)
+    unit = re.sub(r"\brev\b", "revolution", unit, flags=re.IGNORECASE)
     unit = re.sub(r"(⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)", lambda found: "^" + found[1].translate(_SUPERSCRIPTS), unit)
     unit = re.sub(r"(?<=[A-Za-z])[-−](?=[1-4](?![0-9]))", "^-", unit)  # as in mm s-1
     unit = re.sub(r"\b([nuµμmck]?N)-?([cm]?m)\b", r"\1*\2", unit) if kind.unit == "N*m" else unit
