@@ -50,6 +50,14 @@ def test_standard_errors_hold_the_truth_as_often_as_they_say():
 
 
 @pytest.mark.quick
+def test_a_law_of_a_plateau_that_the_rates_do_not_show_has_a_finite_relaxation_time():
+    rate = np.geomspace(0.01, 1000, 9)
+    viscosity = rate**-0.5 * np.exp(0.01 * np.random.default_rng(6).standard_normal(rate.size))
+    assert sb.fluids.flow_curve(rate, viscosity).law.name == "power-law"
+    assert np.isfinite(sb.fluids.flow_curve(rate, viscosity, law="cross").law.relaxation_time)
+
+
+@pytest.mark.quick
 def test_values_that_allow_no_law_are_refused(subtests):
     for name, rate, viscosity, sentence in (
         ("few", RATE[:4], RATE[:4], "4 different rates; a law needs 5"),

@@ -23,7 +23,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.files.datasets import Column
 from stribeck.files.results import Labelled, Tabled
-from stribeck.fluids.description import Fluid
+from stribeck.fluids.description import MAX_RELAXATION_TIME, Fluid
 from stribeck.fluids.laws import RateLaw
 from stribeck.fluids.rheology.rate_laws import Carreau, Cross, PowerLaw
 from stribeck.numerics.settings import EPSILON
@@ -265,7 +265,12 @@ def _searched(
     if x.size < size + 3:
         return []
     exponent = numbers_of(kind)["exponent"]
-    ranges = {"exponent": exponent.range, "infinite_viscosity": (math.log(1e-12), math.log(1 - 1e-9))}
+    longest = math.log(MAX_RELAXATION_TIME)  # a power law is one of any time that is long enough
+    ranges = {
+        "exponent": exponent.range,
+        "relaxation_time": (-longest, longest),
+        "infinite_viscosity": (math.log(1e-12), math.log(1 - 1e-9)),
+    }
     low, high = np.array([(-np.inf, np.inf), *(ranges.get(each, (-np.inf, np.inf)) for each in starts)]).T
 
     def numbers(p: Array) -> dict[str, float]:
