@@ -50,6 +50,14 @@ def test_standard_errors_hold_the_truth_as_often_as_they_say():
 
 
 @pytest.mark.quick
+def test_errors_count_a_plateau_at_high_rates_that_the_values_hardly_show():
+    rate = np.geomspace(0.01, 100, 12)
+    exact = 0.05 + 0.95 * (1 + (2 * rate) ** 2) ** -0.25
+    found = sb.fluids.flow_curve(rate, exact * np.exp(0.02 * np.random.default_rng(3).standard_normal(12)), law="carreau")
+    assert found.law.infinite_viscosity == 0 and abs(found.law.exponent - 0.5) < 3 * found.errors["exponent"] < 0.5
+
+
+@pytest.mark.quick
 def test_a_law_of_a_plateau_that_the_rates_do_not_show_has_a_finite_relaxation_time():
     rate = np.geomspace(0.01, 1000, 9)
     viscosity = rate**-0.5 * np.exp(0.01 * np.random.default_rng(6).standard_normal(rate.size))

@@ -6,7 +6,8 @@ Each law is fitted to the logarithm of the viscosity by least squares, from many
 
 with S the sum of the squares, N the number of values and k that of the parameters.  Of the laws whose criterion is within 6
 of the least, beyond which the evidence against a law is strong (Kass and Raftery 1995), the one with the fewest parameters is
-taken.
+taken.  Its standard errors count the fits of the same law with and without a plateau at high rates, the probability of each
+as exp(-BIC/2): a plateau that the rates hardly show moves the other numbers.
 """
 
 from __future__ import annotations
@@ -174,6 +175,8 @@ def flow_curve(rate: Any, viscosity: Any, *, law: str | None = None) -> FlowCurv
     likely = [fit for fit in fits if fit.criterion <= least + STRONG_EVIDENCE]
     best = min(likely, key=lambda fit: (fit.parameters, fit.criterion))
     misfits = {name: min(each.misfit for each in fits if each.name == name) for name in dict.fromkeys(f.name for f in fits)}
+    misfits[best.name] = best.misfit
+    best = replace(best, errors=_errors(best, [fit for fit in likely if fit.name == best.name]))
     notes = tuple(_notes(best, rates))
     return FlowCurve(rates, values, best.viscosity, best.law, best.errors, best.misfit, misfits, notes)
 
@@ -238,14 +241,14 @@ def _fits(name: str, kind: type[Any] | None, x: Array, y: Array) -> list[_Fit]:
     log_y = np.log(y)
     if kind is None:
         mean = float(log_y.mean())
-        error = float(log_y.std()) / math.sqrt(x.size)
+        error = float(log_y.std(ddof=1)) / math.sqrt(x.size)
         return [_judged(name, None, mean, {}, np.array([error]), log_y - mean)]
     if kind is PowerLaw:
         slope = float(np.polyfit(np.log(x), log_y, 1)[0])
         time = {"relaxation_time": 1 / float(np.exp(np.log(x).mean()))}
         return _searched(name, kind, x, log_y, log_y.mean(), {"exponent": [1 + slope]}, time)
     starts = {"relaxation_time": [math.log(t) for t in np.geomspace(1 / x[-1], 1 / x[0], STARTS)], "exponent": [0.3, 0.7]}
-    plateau = {"infinite_viscosity": [math.log(0.5 * y.min() / y.max())]}
+    plateau = {"infinite_viscosity": [0.5 * y.min() / y.max()]}
     return [fit for each in (starts, starts | plateau) for fit in _searched(name, kind, x, log_y, log_y.max(), each, {})]
 
 
@@ -269,21 +272,23 @@ def _searched(
     ranges = {
         "exponent": exponent.range,
         "relaxation_time": (-longest, longest),
-        "infinite_viscosity": (math.log(1e-12), math.log(1 - 1e-9)),
+        "infinite_viscosity": (0.0, 1 - 1e-9),
     }
     low, high = np.array([(-np.inf, np.inf), *(ranges.get(each, (-np.inf, np.inf)) for each in starts)]).T
 
     def numbers(p: Array) -> dict[str, float]:
         free = zip(starts, p[1:].tolist(), strict=True)
-        return fixed | {each: value if each == "exponent" else math.exp(value) for each, value in free}
+        return fixed | {each: math.exp(value) if each == "relaxation_time" else value for each, value in free}
 
     def deviation(p: Array) -> Array:
         law = kind(**numbers(p))
         rate = x * law.time
         return np.asarray(p[0] + np.log(law.stress(rate) / rate) - log_y)
 
-    first = (np.clip([log_viscosity, *each], low + 1e-6, high - 1e-6) for each in itertools.product(*starts.values()))
-    found = min((least_squares(deviation, each, bounds=(low, high)) for each in first), key=lambda each: each.cost)
+    first = (np.clip([log_viscosity, *each], low, high) for each in itertools.product(*starts.values()))
+    found = min(
+        (least_squares(deviation, each, bounds=(low, high), x_scale="jac") for each in first), key=lambda each: each.cost
+    )
     _, singular, rows = np.linalg.svd(np.asarray(found.jac), full_matrices=False)
     scatter = math.sqrt(2 * found.cost / (x.size - size))
     if singular[-1] > EPSILON * singular[0]:
@@ -302,13 +307,24 @@ def _judged(
     errors = {"viscosity": viscosity * float(log_errors[0])}
     fitted = [each for each in given if kind is not PowerLaw or each != "relaxation_time"]
     for each, error in zip(fitted, log_errors[1:], strict=True):
-        errors[each] = float(error) * (1.0 if each == "exponent" else given[each])
+        errors[each] = float(error) * (given[each] if each == "relaxation_time" else 1.0)
     if "infinite_viscosity" in given:
         given = given | {"infinite_viscosity": viscosity * given["infinite_viscosity"]}
         errors["infinite_viscosity"] *= viscosity
     law = None if kind is None else kind(**given)
     criterion = n * math.log(max(squares / n, NO_SCATTER**2)) + k * math.log(n)
     return _Fit(name, viscosity, law, errors, math.sqrt(squares / n), k, criterion)
+
+
+def _errors(best: _Fit, likely: list[_Fit]) -> dict[str, float]:
+    """Return standard errors about the numbers of a fit: over the likely fits of its law, as probable as their criteria say."""
+    found: dict[str, float] = {}
+    for name, error in best.errors.items():
+        known = [fit for fit in likely if math.isfinite(fit.errors.get(name, math.inf))]
+        weights = np.exp([0.5 * (best.criterion - fit.criterion) for fit in known])
+        squares = [fit.errors[name] ** 2 + (_value(fit, name) - _value(best, name)) ** 2 for fit in known]
+        found[name] = math.sqrt(np.average(squares, weights=weights)) if known else error
+    return found
 
 
 def _notes(fit: _Fit, x: Array) -> list[str]:
