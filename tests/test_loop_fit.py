@@ -74,6 +74,19 @@ def test_positions_count_from_either_end_however_far_the_zero_of_the_force_is_of
     assert not any("the other way" in note for note in found.notes)
 
 
+def test_a_drift_of_the_force_is_found_and_taken_off(case, tmp_path):
+    path = loop_of(tmp_path / "loop.csv", sb.load_case(case).contact.replace(boundary_friction=0.5))
+    x, steady = np.loadtxt(path, delimiter=",", skiprows=1, unpack=True)
+    drifted = steady - 0.05 * np.arange(len(x)) / len(x)
+    path.write_text("position [mm],friction\n" + "".join(f"{a:.7g},{b:.7g}\n" for a, b in zip(x, drifted, strict=True)))
+    found = sb.bench.fit_loop(path, case, free=["boundary_friction"])
+    low, high = found["boundary_friction"].interval_95
+    assert low < 0.5 < high < 1.5 * low and found.noise < 4 * NOISE
+    (drift,) = filter(None, (re.search(r"drifts by (-[0-9.]+) ± (0\.00[0-9]*) from the first", note) for note in found.notes))
+    assert abs(float(drift[1]) + 0.05) < 3 * float(drift[2])
+    assert np.abs(found.measured - steady[np.isin(1e-3 * x, found.values)]).max() < 0.005
+
+
 @pytest.mark.parametrize(
     "free", [("boundary_friction",), pytest.param(("boundary_friction", "roughness"), marks=pytest.mark.slow)]
 )

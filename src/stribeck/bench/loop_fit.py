@@ -100,7 +100,7 @@ class LoopFit(WithFittedInputs, Exported, Told, ByValue):
     stroke: Annotated[Stroke, "the stroke with the fitted inputs"] = field(repr=False)
     over: Annotated[str, "what friction was measured over, 'position' or 'time'"]
     values: Annotated[Array, "position or time of the rows that were used", "m or s"]
-    measured: Annotated[Array, "measured friction coefficient, less the zero of the force where that is off", "1"]
+    measured: Annotated[Array, "measured friction coefficient, less the zero of the force where that is off or drifts", "1"]
     friction: Annotated[Array, "fitted friction coefficient", "1"]
     friction_error: Annotated[Array, "error of the latter by steps and mesh", "1"]
     noise: Annotated[float, "standard deviation of the residuals", "1"]
@@ -168,8 +168,8 @@ def fit_loop(
 
     .. math:: \min_\theta \sum_i \left(\mu(x_i; e^\theta) - \mu_i\right)^2
 
-    over the logarithms of the free inputs, with friction of the last cycle of :func:`stribeck.stroke`.  Where out and back
-    differ in size by more than three standard errors, the zero of the force is off, and is found with the inputs.
+    over the logarithms of the free inputs, with friction of the last cycle of :func:`stribeck.stroke`.  A zero of the force
+    that is off, or drifts from the first row to the last, by more than three standard errors is found with the inputs.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ def fit_loop(
     goal = Objective(model, None, None, False, False)  # type: ignore[arg-type]
     found = settle(goal, np.zeros(len(model.free)))
     said = model.settle_zero(found)
-    return _result(model, found if said else settle(goal, found.theta), said)
+    return _result(model, settle(goal, found.theta), said)
 
 
 def _middle(loop: Loop) -> float:
@@ -271,12 +271,13 @@ class _LoopModel:
         self.rubs = np.array([each.name == contact.friction_of_asperities.size for each in free])
         self.strokes = 0
         self.is_mirrored = False  # Whether positions fall where friction is above zero
-        self.zero_is_free = True  # Whether the zero of the force is fitted with the inputs
         self._known: dict[bytes, tuple[Array, Array, Array, Array]] = {}
         self.phase, sliding = self._phases(loop)
         self.left_out = int((~sliding).sum())
         self.data = replace(loop, values=loop.values[sliding], friction=loop.friction[sliding])
         self.phase = self.phase[sliding]
+        later = np.flatnonzero(sliding) / len(sliding)
+        self.zeros = np.column_stack([np.ones(len(later)), later - later.mean()])  # of the force, and its drift; fitted along
 
     def _phases(self, loop: Loop) -> tuple[Array, Flags]:
         """Return the time in the cycle of each row, and whether it slides."""
@@ -347,25 +348,32 @@ class _LoopModel:
             beside = self._parts(theta + STEP * np.eye(len(theta))[k])
             columns.append((rubbing * (beside[0] - asperities) + beside[1] - fluid) / STEP)
         share, friction, jacobian = np.ones_like(fluid), rubbing * asperities + fluid, np.column_stack(columns)
-        if self.zero_is_free:  # the best one of these inputs
-            friction, jacobian = friction + np.mean(self.data.friction - friction), jacobian - jacobian.mean(axis=0)
+        friction, jacobian = friction + self.zero_of(self.data.friction - friction), jacobian - self.zero_of(jacobian)
         return Prediction(friction, jacobian, share, share, share, rubbing * errors[0] + errors[1])
 
+    def zero_of(self, friction: Array) -> Array:
+        """Return the part of friction that a zero of the force and its drift make."""
+        return np.asarray(self.zeros @ np.linalg.lstsq(self.zeros, friction, rcond=None)[0])
+
     def settle_zero(self, at: Minimum) -> str:
-        """Take off the zero of the force, if it is clear, and return what is to be said of it."""
+        """Fit the zero of the force and its drift only where they are clear, and return what is to be said of them."""
         misfit = at.prediction.friction - self.data.friction
-        self.zero_is_free = False
-        found = self.predict(at.theta, None)
         _, correlation = memory([misfit])
-        own = np.ones(len(misfit))  # what the inputs cannot do of a shift of all rows
-        own -= found.jacobian @ np.linalg.lstsq(found.jacobian, own, rcond=None)[0]
-        noise = math.sqrt(float(misfit @ misfit) / max(len(misfit) - len(self.free) - 1, 1))
-        error = noise * math.sqrt((1 + correlation) / (1 - correlation) / max(float(own @ own), 1e-300))
-        zero = float(np.mean(self.data.friction - found.friction))
-        if abs(zero) <= CLEAR * error:
-            return ""
-        self.data = replace(self.data, friction=self.data.friction - zero)
-        return f"Out and back: the zero of the force is off by {zero:.2g} ± {error:.1g} of friction; taken off."
+        freedom = max(len(misfit) - len(self.free) - 2, 1)
+        variance = float(misfit @ misfit) / freedom * (1 + correlation) / (1 - correlation)
+        zeros, self.zeros = self.zeros, np.empty((len(misfit), 0))
+        plain = self.predict(at.theta, None)
+        for count in (2, 1):
+            own = zeros[:, :count]  # and what the inputs cannot do of it
+            alone = own - plain.jacobian @ np.linalg.lstsq(plain.jacobian, own, rcond=None)[0]
+            found = np.linalg.lstsq(own, self.data.friction - plain.friction, rcond=None)[0]
+            errors = np.sqrt(variance * np.diag(np.linalg.pinv(alone.T @ alone)))
+            if abs(found[-1]) > CLEAR * errors[-1]:
+                self.zeros = own
+                said = [f"{each:.2g} ± {error:.1g}" for each, error in zip(found, errors, strict=True)]
+                drift = "" if count == 1 else f", and drifts by {said[1]} from the first row to the last"
+                return f"Out and back: the zero of the force is off by {said[0]} of friction{drift}; taken off."
+        return ""
 
 
 def _result(model: _LoopModel, at: Minimum, zero: str) -> LoopFit:
@@ -373,7 +381,7 @@ def _result(model: _LoopModel, at: Minimum, zero: str) -> LoopFit:
     from scipy.stats import t
 
     misfit = at.residuals * at.objective.size
-    n, p = at.jacobian.shape
+    n, p = len(misfit), len(model.free) + model.zeros.shape[1]
     _, correlation = memory([misfit])
     widened = (1 + correlation) / (1 - correlation)
     noise = math.sqrt(float(misfit @ misfit) / max(n - p, 1))
@@ -383,9 +391,10 @@ def _result(model: _LoopModel, at: Minimum, zero: str) -> LoopFit:
     scatter = np.sqrt(np.diag(covariance))
     # Time steps err alike from row to row, which is no noise: the inputs follow what half of the steps change, but not along
     # directions that the loop does not determine.
-    coarse, finer = (sum(model.at_rows(model.at(at.theta, steps))[:2]) for steps in (model.steps, 2 * model.steps))
+    coarse, finer = (np.add(*model.at_rows(model.at(at.theta, steps))[:2]) for steps in (model.steps, 2 * model.steps))
     least = 1 / WIDEST / max(float(np.linalg.norm(at.jacobian, 2)), 1e-300)
-    moved = np.linalg.pinv(at.prediction.jacobian, rcond=min(least, 1.0)) @ (coarse - finer)
+    changed = coarse - finer - model.zero_of(coarse - finer)
+    moved = np.linalg.pinv(at.prediction.jacobian, rcond=min(least, 1.0)) @ changed
     low, high = at.objective.bounds
     places = np.clip(at.theta + moved, low, high)
     errors = np.hypot(scatter, moved)
@@ -402,15 +411,16 @@ def _result(model: _LoopModel, at: Minimum, zero: str) -> LoopFit:
         notes.append(f"{model.left_out} rows slower than a tenth of the largest speed left out.")
     if model.is_mirrored:
         notes.append("Positions fall where friction is above zero: they were counted from the other end.")
-    against = int((model.motion.speed(model.phase) * model.data.friction < 0).sum())
-    if against and model.data.over == "time":
-        notes.append(f"In {against} of {n} rows friction has the sign of the other way: does time begin with the motion?")
     if np.any(np.abs(moved) > scatter):
         notes.append("Half of the time steps move the inputs by more than the noise does: ask for more steps.")
     outcome = outcome_of_inputs(inputs) if at.ended else FitOutcome.STEP_LIMIT
     found = model.at(places, 2 * model.steps)
     by_asperities, by_fluid, *of_parts = model.at_rows(found)
     friction, error_of_rows = by_asperities + by_fluid, of_parts[0] + of_parts[1]
+    measured = model.data.friction - model.zero_of(model.data.friction - friction)
+    against = int((model.motion.speed(model.phase) * measured < 0).sum())
+    if against and model.data.over == "time":
+        notes.append(f"In {against} of {n} rows friction has the sign of the other way: does time begin with the motion?")
     size = np.abs(by_asperities) + np.abs(by_fluid)
     shares = (np.abs(by_asperities) / size, np.abs(by_fluid) / size, model.along(found, found.contact_load_share))
     of_rows = Prediction(size, at.prediction.jacobian, *shares, error_of_rows)
@@ -422,7 +432,7 @@ def _result(model: _LoopModel, at: Minimum, zero: str) -> LoopFit:
         found,
         model.data.over,
         model.data.values,
-        model.data.friction,
+        measured,
         friction,
         error_of_rows,
         noise,

@@ -317,7 +317,7 @@ def _judged(
 
 
 def _errors(best: _Fit, likely: list[_Fit]) -> dict[str, float]:
-    """Return standard errors about the numbers of a fit: over the likely fits of its law, as probable as their criteria say."""
+    """Return standard errors about the numbers of a fit: over its likely fits, as probable as their criteria say."""
     found: dict[str, float] = {}
     for name, error in best.errors.items():
         known = [fit for fit in likely if math.isfinite(fit.errors.get(name, math.inf))]
