@@ -37,6 +37,7 @@ def test_a_hot_oil_of_a_grade_is_as_thin_as_its_chart_says():
         return 1e6 * sb.fluids.iso_vg(grade, temperature, **index).viscosity / density
 
     assert kinematic(46, 40) == pytest.approx(46, rel=1e-9)
+    assert all(kinematic(grade, 60) == kinematic(46, 60) for grade in ("46", "46 cSt", "46 mm2/s", "ISO-VG 46", "vg46"))
     assert kinematic("VG 46", 60) == pytest.approx(20.6, rel=0.005)  # a common chart of ISO grades of index 100
     # Typical hydraulic oils of data sheets, and their viscosity at 100 degC.
     for grade, index, at_100 in ((32, 102, 5.4), (46, 98, 6.7), (68, 97, 8.6)):
@@ -69,6 +70,7 @@ def test_an_oil_that_no_sheet_has_is_refused(subtests):
         ("index", lambda: sb.fluids.iso_vg(46, viscosity_index=400), "between 0 and 250"),
         ("thin", lambda: sb.fluids.iso_vg(5, viscosity_index=50), "give both viscosities"),
         ("order", lambda: sb.fluids.oil(6.8, 46), "at 100 and at 40 degC"),
+        ("infinite", lambda: sb.fluids.oil(np.inf, 10), "viscosity_40 = inf; write a kinematic viscosity"),
         ("hot", lambda: sb.fluids.oil(46, 6.8, "500 degC"), "between -20 and 150 degC"),
         ("density", lambda: sb.fluids.iso_vg(46, density_15=8.7), "700 and 1100"),
     ):
@@ -88,10 +90,11 @@ def test_warm_silicone_oil_thins_less_than_mineral_oil():
 @pytest.mark.quick
 def test_a_grade_may_have_its_unit():
     oil = sb.fluids.PRESETS["silicone-oil"]
-    assert oil(grade="100 cSt").viscosity == pytest.approx(oil(grade=100).viscosity, rel=1e-12)
+    for grade in ("100 cSt", "100 mm2/s", "100"):
+        assert oil(grade=grade).viscosity == pytest.approx(oil(grade=100).viscosity, rel=1e-12)
     with pytest.raises(sb.InputError, match="grade = '1 cSt' must lie between 5 and 1000 cSt"):
         oil(grade="1 cSt")
-    with pytest.raises(sb.InputError, match=r"grade = '1 Pa\*s' is a (dynamic )?viscosity"):
+    with pytest.raises(sb.InputError, match=r"grade = '1 Pa\*s'; write a kinematic viscosity"):
         oil(grade="1 Pa*s")
 
 

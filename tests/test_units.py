@@ -36,6 +36,8 @@ ACCEPTED = [
     ("0.1 m/s", "speed", 0.1),
     ("360 km/h", "speed", 100.0),
     ("10 mm.s^-1", "speed", 0.01),
+    ("2.7 N/mm2", "pressure", 2.7e6),
+    ("10 mm2 s-1 / mm", "speed", 0.01),
     ("0.5 µm", "length", 0.5e-6),
     ("1um", "length", 1e-6),
     (".5 in", "length", 0.0127),

@@ -18,13 +18,14 @@ where L and H are the viscosities at 40 degrees of reference oils of index 0 and
 from __future__ import annotations
 
 import math
+import re
 
 from stribeck.fluids.description import IMPOSSIBLE, LIQUID, TEMPERATURE, Fluid, Liquid, celsius, check_temperature
 from stribeck.numerics.newton import root_between
 from stribeck.quantities.docstrings import told
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["OIL_EYRING_STRESS", "iso_vg", "oil"]
+__all__ = ["OIL_EYRING_STRESS", "centistokes", "iso_vg", "oil"]
 
 OIL_EYRING_STRESS = 3e6  # Stress kT per molecule of PAO 10 (0.63 kg/mol), rounded down [Pa].
 
@@ -84,8 +85,8 @@ def iso_vg(
     >>> round(1e3 * hydraulic.viscosity, 1)  # mPa s; 20.6 cSt
     17.3
     """
-    text = grade.upper().removeprefix("ISO").strip().removeprefix("VG").strip() if isinstance(grade, str) else grade
-    at_40 = _centistokes(text, "grade")
+    named = re.fullmatch(r"\s*(?:ISO)?[\s-]*VG[\s-]*(.*)", grade, re.IGNORECASE) if isinstance(grade, str) else None
+    at_40 = centistokes(named[1] if named else grade, "grade")
     if not 5 <= at_40 <= 3200:
         raise InputError(f"grade = {show(grade)} must lie between 5 and 3200 cSt, the viscosity at 40 degC, as in ISO VG 46.")
     index = to_si(viscosity_index, "number", "viscosity_index", "100")
@@ -121,7 +122,7 @@ def oil(
     >>> round(1e3 * sb.fluids.oil("61.0 cSt", "9.64 cSt", "80 degC", density_15=833.0).viscosity, 2)  # mPa s
     12.35
     """
-    at_40, at_100 = _centistokes(viscosity_40, "viscosity_40"), _centistokes(viscosity_100, "viscosity_100")
+    at_40, at_100 = centistokes(viscosity_40, "viscosity_40"), centistokes(viscosity_100, "viscosity_100")
     if not 1.5 <= at_100 < at_40:
         raise InputError(
             f"viscosity_100 = {show(viscosity_100)} must lie between 1.5 cSt and viscosity_40 = {show(viscosity_40)}: the "
@@ -130,10 +131,10 @@ def oil(
     return _oil(f"oil of {at_40:g} and {at_100:g} cSt", at_40, at_100, temperature, density_15)
 
 
-def _centistokes(value: str | float, name: str) -> float:
-    """Return a kinematic viscosity in cSt, given so as a number or as text."""
+def centistokes(value: str | float, name: str) -> float:
+    """Return a kinematic viscosity in cSt, given so as a number, or as text with a unit or without."""
     try:
-        return float(value)
+        return to_si(float(value), "number", name)
     except (TypeError, ValueError):
         try:
             return 1e6 * to_si(value, "kinematic", name, "46 cSt")

@@ -29,7 +29,7 @@ from types import MappingProxyType
 from typing import Annotated, Any
 
 from stribeck.fluids.description import IMPOSSIBLE, LIQUID, TEMPERATURE, Fluid, Liquid, celsius, check_temperature
-from stribeck.fluids.oils import OIL_EYRING_STRESS, SOURCE, iso_vg, oil
+from stribeck.fluids.oils import OIL_EYRING_STRESS, SOURCE, centistokes, iso_vg, oil
 from stribeck.fluids.rheology.rate_laws import Carreau, Cross
 from stribeck.fluids.rheology.viscosity import Roelands
 from stribeck.quantities.docstrings import Described, told
@@ -99,9 +99,8 @@ def _water(T: float) -> float:
 
 
 def _silicone(grade: str | float = 100.0, temperature: str | float = 25.0) -> Liquid:
-    """Return a silicone oil (PDMS) of a grade: a number in cSt, or text with a unit."""
-    given, is_text = grade, isinstance(grade, str)
-    grade = 1e6 * to_si(given, "kinematic", "grade", "100 cSt") if is_text else to_si(given, "number", "grade", "100")
+    """Return a silicone oil (PDMS) of a grade in cSt."""
+    given, grade = grade, centistokes(grade, "grade")
     if not 5 <= grade <= 1000:
         raise InputError(f"grade = {show(given)} must lie between 5 and 1000 cSt; thicker silicone oils thin under shear.")
     T = check_temperature(celsius(temperature), -25, 150)

@@ -244,7 +244,7 @@ def _factor(unit: str, kind: Dimension, received: str) -> Fraction:
     unit = "rpm" if _TURNS.fullmatch(unit) and kind.unit == "rad/s" else re.sub(r"\bRPM\b", "rpm", unit)
     unit = re.sub(r"\brev\b", "revolution", unit, flags=re.IGNORECASE)
     unit = re.sub(r"(⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)", lambda found: "^" + found[1].translate(_SUPERSCRIPTS), unit)
-    unit = re.sub(r"(?<=[A-Za-z])[-−](?=[1-4](?![0-9]))", "^-", unit)  # as in mm s-1
+    unit = re.sub(r"(?<=[A-Za-z])([-−]?)(?=[1-4](?![0-9A-Za-z]))", r"^\1", unit).replace("−", "-")  # as in mm2 s-1
     unit = re.sub(r"\b([nuµμmck]?N)-?([cm]?m)\b", r"\1*\2", unit) if kind.unit == "N*m" else unit
     unit = re.sub(r"(?<=[A-Za-z])\s*[.·⋅]\s*(?=[A-Za-z])", "*", unit)
     for power, known in kind.steps.items():
