@@ -79,6 +79,21 @@ def test_a_sample_with_an_input_of_its_own_is_a_run_worth_measuring(tmp_path):
     assert "smooth, " in plan.plot().legends[0].get_texts()[0].get_text()
 
 
+def test_the_errors_of_a_run_on_a_surface_whose_beta_follows_from_the_roughness_come_true(tmp_path):
+    path = tmp_path / "case.toml"
+    surface = {"h_rms": '"1 um"', "q0": '"1e4 1/m"', "q1": '"1e7 1/m"', "hurst": 0.8}
+    tables = {"surface": surface, "fit": {"relative_error": 0.03}, "solver": {"rtol": 1e-3}}
+    path.write_text(case_text({"roughness": None, "alpha": None, "beta": None}, **tables))
+    case = sb.load_case(path)
+    speeds = np.array([2e-4, 3e-3, 0.02])
+    friction = sb.stribeck_curve(case.contact, speed=speeds, rtol=1e-3).friction
+    known = sb.fit(measured(speeds, friction), case, intervals=False)
+    [run] = sb.next_runs(known, 1, speeds=["0.3 mm/s"], loads=[case.contact.load]).runs
+    rows = measured(np.append(speeds, run.speed), np.append(friction, run.friction))
+    for each in sb.fit(rows, case, intervals=False).inputs:
+        assert run.errors[each.name] == pytest.approx(each.standard_error, rel=0.01)
+
+
 def test_another_load_costs_more(found):
     dear = sb.next_runs(found, 1, cost={"load": 1e6})
     assert dear.runs[0].load == pytest.approx(TRUE.load)

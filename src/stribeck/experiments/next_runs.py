@@ -243,7 +243,8 @@ def _row(fit: Fit, curve: str, contact: Contact) -> tuple[Array, float] | None:
     except (SolveError, InputError):
         return None
     at = fit.data.curves.index(curve)
-    row = [slopes.get(each.name, 0.0) if each.acts_on(at) else 0.0 for each in fit._minimum.objective.model.free]
+    free = fit._minimum.objective.model.free
+    row = [sum(slopes.get(name, 0.0) for name in each.names) if each.acts_on(at) else 0.0 for each in free]
     return (np.array(row), friction) if np.isfinite(row).all() else None
 
 
