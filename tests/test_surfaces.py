@@ -129,6 +129,17 @@ def test_sharp_cut_offs_inside_the_scan_are_found():
         assert abs(getattr(fit.roughness, name) - getattr(surface, name)) < 3 * fit.errors[name]
 
 
+def test_a_plateau_that_ends_inside_the_scan_is_found_whole():
+    """Its cut-off was taken to lie where the power law begins, at twice to three times the wave number."""
+    surface = SelfAffine(1e-6, 5 * FUNDAMENTAL, 1.5e6, 0.8, 20 * FUNDAMENTAL)
+    for fit in [fitted(surface, (128, 128), seed) for seed in (0, 1, 3)]:
+        assert {"q0", "roll_off"} <= set(fit.found)
+        height = surface.spectrum.between(surface.q0, fit.roughness.q1).rms_height
+        assert abs(fit.roughness.h_rms - height) < 3 * fit.errors["h_rms"]
+        for name in ("q0", "roll_off"):
+            assert abs(getattr(fit.roughness, name) - getattr(surface, name)) < 3 * fit.errors[name]
+
+
 def test_a_power_law_without_end_is_not_given_a_roll_off():
     fits = [fitted(SelfAffine(1e-6, FUNDAMENTAL / 4, 3e6, 0.6), (128, 128), seed) for seed in range(4)]
     assert sum("roll_off" in fit.found for fit in fits) <= 1

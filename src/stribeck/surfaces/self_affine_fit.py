@@ -310,6 +310,11 @@ def _candidates(data: MeasuredSpectrum) -> list[_Trial | None]:
             trials.append(found)
             ends = (found.low, found.high) if found else ends
             end = "high" if end == "low" else "low"
+    # A power law is cut off where it goes over into a plateau; that plateau has a cut-off of its own.
+    cut = _best(trials)
+    if cut is not None:
+        lows = range(1, max(trial.low for trial in trials if trial is not None))
+        trials += [_fit_between_cut_offs(data, True, False, low, cut.high) for low in lows]
     noisy = _best(trials)
     if noisy is not None and noisy.high == n:
         trials += [_fit_between_cut_offs(data, roll_off, True, noisy.low, n) for roll_off in (False, True)]
