@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 SCREEN_WIDTH = 80  # Columns of the terminal for which notes of an answer are shortened.
 
-NOTE_LINES = 4  # Lines of such a terminal that the notes of an answer may take together.
+NOTE_LINES = 3  # Lines of such a terminal that the notes of an answer may take together.
 
 
 def report_lines(
@@ -198,9 +198,7 @@ def _regime_lines(curve: StribeckCurve) -> Iterator[str]:
 # Numbers that the sentence above the table has.
 OF_THE_SENTENCE = ("friction from", "hysteresis", "load on", "Lambda")
 
-NO_ERRORS = (
-    'No input has an error, and no number here an interval; uncertainty = "typical" at the top of the case takes usual errors.'
-)
+NO_ERRORS = 'No input has an error; uncertainty = "typical" at the top of the case adds them.'
 
 MORE = "-v shows all inputs, sensitivities, transitions, intervals and full notes."
 

@@ -29,6 +29,7 @@ MAX_HERTZ_PRESSURE = MAX_PRESSURE_EXPONENT / OIL_COEFFICIENT  # Hertz pressure u
 MAX_CONTACT_SLOPE = 0.3  # Hertz half-width over the radius above which the model is coarse
 MAX_FILM_SLOPE = 0.1  # Film over the ball's radius above which lubrication theory does not hold
 LAW_RANGE = (0.4, 2.0)  # Gaps over h_rms in which the exponential law follows a rough surface (contact_laws.md)
+WIDER_LAW = "Persson's law, from a table [surface], covers that range."
 USUAL_ALPHA = 2.0  # Decay coefficient of self-affine surfaces, by which groups alone are judged
 USUAL_BETA = 0.05  # Slope coefficient of self-affine surfaces, by which groups alone are judged
 NEGLIGIBLE_SHARE = 0.01  # Share of load and of friction of the asperities up to which their contact law does not matter
@@ -108,16 +109,14 @@ def law_notes(
     if groups.load >= largest_load(groups.law):
         notes.append(
             f"The load group is {float(groups.load):.3g}, not below 1: the exponential contact law is outside its range, "
-            "as asperities cannot carry this load at a positive gap. "
-            "Persson's law, from a table [surface], covers that range."
+            f"as asperities cannot carry this load at a positive gap. {WIDER_LAW}"
         )
     if ratio < 0:
         notes.append("The gap is negative: the exponential contact law is outside its range.")
     elif ratio < LAW_RANGE[0]:
         notes.append(
             f"The central gap is {ratio:.2g} {measured}: the exponential contact law is outside its range, "
-            f"which ends at about {LAW_RANGE[0]} h_rms; real contact is stiffer there. "
-            "Persson's law, from a table [surface], covers that range."
+            f"which ends at about {LAW_RANGE[0]} h_rms; real contact is stiffer there.{'' if notes else f' {WIDER_LAW}'}"
         )
     return (*notes, *far)
 
