@@ -302,6 +302,33 @@ def test_a_measured_curve_is_mapped_shown_fitted_and_removed(open_page, tmp_path
     page.wait_for_function(f"!({CHART})('friction').series.some(s => s.name === 'odd.csv')")
 
 
+def test_what_was_closed_opens_again_and_no_fit_stands_there_for_another_file(open_page, tmp_path):
+    page = open_page()
+    names = "abcde"
+    odd, many, other = (tmp_path / f"{each}.csv" for each in ("odd", "many", "other"))
+    odd.write_text("A;B\n1;0.5\n2;0.4\n")
+    rows = [f"{name},{speed},{0.5 - 0.01 * k - speed / 100}" for k, name in enumerate(names) for speed in (1, 10, 30)]
+    many.write_text("\n".join(["curve,speed [mm/s],friction", *rows]))
+    other.write_text("speed [mm/s],friction\n1,0.5\n10,0.4\n30,0.3\n")
+    for _ in range(2):
+        page.get_by_role("button", name="Copy").click()
+        page.get_by_text("As Python ...").click()
+        page.locator(".q-dialog").get_by_role("button", name="Close").click()
+        page.wait_for_selector(".q-dialog", state="detached")
+        page.set_input_files("input[type=file]", odd)
+        page.locator(".mapping").get_by_role("button", name="Cancel").click()
+    page.set_input_files("input[type=file]", many)
+    page.wait_for_function(f"({CHART})('friction').series.filter(s => s.id.startsWith('measured')).length === {len(names)}")
+    for _ in range(2):
+        page.get_by_role("button", name="Fit", exact=True).click()
+        page.locator(".fitting").get_by_role("button", name="Close").click()
+    page.get_by_role("button", name="Fit", exact=True).click()
+    page.get_by_text("Fit to many.csv").wait_for()
+    page.set_input_files("input[type=file]", other)  # which "Fit these" would fit now
+    page.wait_for_selector(".fitting", state="hidden")
+    page.wait_for_function(f"document.querySelectorAll('.chips .q-chip').length === {len(names) + 1}")
+
+
 def test_what_is_shown_is_downloaded(open_page, tmp_path):
     page = open_page()
     now = at_rest(page, lambda: (slider(page, "load_group").focus(), page.keyboard.press("ArrowRight")))

@@ -76,7 +76,7 @@ def friction_chart(answer: Answer) -> Options:
     for i, found in enumerate(answer.measured):
         heights += _range(found.friction)
         places = found.places(contact, inputs.abscissa) * scale
-        series.append(_series(f"measured{i}", found.name, "points", _pairs(places, found.friction)))
+        series.append(_series(f"measured{i % 3}", found.name, "points", _pairs(places, found.friction)))
     low, high = _friction_limits(heights)
     if curve is not None and "curve" not in answer.stale and "minimum" in curve.marks:
         at = curve.marks["minimum"].value * scale

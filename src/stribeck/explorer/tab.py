@@ -191,9 +191,17 @@ class Tab:
 
     def remove(self, place: int) -> None:
         """Drop a pinned or a measured curve."""
-        kept: list[Any] = self.pins if place < len(self.pins) else self.measured
-        del kept[place if kept is self.pins else place - len(self.pins)]
+        if place < len(self.pins):
+            del self.pins[place]
+        else:
+            self.show_measured([each for k, each in enumerate(self.measured, len(self.pins)) if k != place])
         self.request()
+
+    def show_measured(self, measured: list[Measured]) -> None:
+        """Show other measured curves, of the last files; a fit that stands there may belong to one that goes."""
+        files = list(dict.fromkeys(each.file for each in measured))[-MAX_MEASURED:]
+        self.measured = [each for each in measured if each.file in files]
+        self.page.show(fitting=None, fitted=None)
 
     async def example(self, title: str) -> None:
         """Show an example."""
@@ -220,7 +228,7 @@ class Tab:
                 self.message = found.report
             else:
                 self.file = name, content
-                self.measured = [*(each for each in self.measured if each.file != name), *found][-MAX_MEASURED:]
+                self.show_measured([*(each for each in self.measured if each.file != name), *found])
                 self.page.show(mapping=None)
                 self.request()
         except InputError as problem:
@@ -290,7 +298,6 @@ class Tab:
 
     def complain(self, text: str) -> None:
         """Show sentences about a file until they are read."""
-        self.page.shown.pop("complaint", None)
         self.page.show(complaint=text.splitlines())
 
     # --- what follows ---
