@@ -827,6 +827,15 @@ def test_the_first_solved_curve_is_coarse_and_says_so_and_at_rest_a_finer_one_re
         assert abs(math.log(first.value / then.value)) < first.error + then.error
 
 
+def test_the_curve_of_a_pinned_contact_that_a_link_brings_is_solved_at_rest():
+    rolling, model = choices.choose(START, "motion", "rolling"), Answerer()
+    opened = url.decode(parse_qsl(url.encode(START, [rolling])), START)
+    assert opened.pins == (rolling,) and model(opened.inputs, opened.pins).pins[0].curve is None  # there is no table of it
+    list(model.at_rest(opened.inputs, opened.pins)[-1](always))
+    found = model(opened.inputs, opened.pins).pins[0].curve.found
+    assert found.at([1e-2]).friction == pytest.approx(sb.solve(rolling.replace(speed=1e-2).contact).friction().total, rel=1e-3)
+
+
 def test_a_contact_at_the_end_of_double_precision_has_no_curve_and_says_why():
     now = inputs.with_text(START, "load_group", "1e-300")  # at 1 m/s its groups would leave that range
     model = Answerer()

@@ -150,11 +150,12 @@ class Answerer:
             measured=measured,
         )
 
-    def at_rest(self, inputs: Inputs) -> list[Part]:
-        """Return what is to be solved for inputs that rest, the first part at once."""
+    def at_rest(self, inputs: Inputs, pins: Sequence[Inputs] = ()) -> list[Part]:
+        """Return what is to be solved for inputs that rest, the first part at once, and for the pinned contacts."""
         geometry = inputs.table.geometry
         curves = [partial(self._solve_curve, inputs, rtol) for rtol in (FIRST_RTOL[geometry], SOLVED_RTOL)]
         slow = [partial(each, inputs) for each in (self._find_margins, self._find_spread, self._find_checks)]
+        slow += [partial(self._solve_curve, pin, SOLVED_RTOL) for pin in pins]  # a link has no curves, only contacts
         diagram = partial(self._solve_diagram, inputs)
         return [*curves, diagram, *slow] if SOLVED_ROWS[geometry].is_quick else [*curves, *slow, diagram]
 

@@ -408,7 +408,7 @@ class Tab:
         self.progress = ""
         idle = asyncio.ensure_future(self.remember(now))
         try:
-            for part in self.model.at_rest(now):
+            for part in self.model.at_rest(now, tuple(self.pins)):
                 await self.finish(part(report), now, go_on)
                 await idle
         except Superseded:
