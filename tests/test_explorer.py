@@ -1038,7 +1038,7 @@ def test_a_measured_curve_is_read(subtests):
             assert np.allclose(found.speed, speed, rtol=1e-12) and np.allclose(found.friction, friction, rtol=1e-12)
 
 
-def test_over_the_hersey_number_measured_points_stand_at_their_own(subtests):
+def test_measured_points_stand_at_their_own_hersey_number_also_after_a_change(subtests):
     for contact in [START.contact, BALL.contact]:
         with subtests.test(contact=contact):
             text = "curve;speed [m/s];viscosity [mPa*s];friction\na;0.01;50;0.6\nb;0.02;10;0.5\n"
@@ -1048,7 +1048,10 @@ def test_over_the_hersey_number_measured_points_stand_at_their_own(subtests):
                 assert found.places(later, "hersey") * curves.hersey_scale(later) == pytest.approx(own, rel=1e-12)
                 assert found.places(later, "speed") == found.speed
             [found] = read_measured("h.csv", b"Hersey number [-],friction\n1e-5,0.5\n", contact)
-            assert found.places(later, "hersey") * curves.hersey_scale(later) == pytest.approx(1e-5, rel=1e-12)
+            for abscissa in ("hersey", "speed"):  # also over the speed, where the curve moves with viscosity and load
+                assert found.places(later, abscissa) * curves.hersey_scale(later) == pytest.approx(1e-5, rel=1e-12)
+            [found] = read_measured("e.csv", b"eta U [mPa*m],friction\n1,0.5\n", contact)
+            assert found.places(later, "speed") * later.viscosity == pytest.approx(1e-3, rel=1e-12)
 
 
 # --- server ---

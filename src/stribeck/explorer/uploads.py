@@ -44,18 +44,21 @@ class Measured:
 
     name: str  # Name of its file, and of the curve where that holds several
     file: str  # Name of its file
-    speed: Array  # Sliding speed, ascending [m/s]
+    speed: Array  # Sliding speed in the contact that was shown when it was loaded, ascending [m/s]
     friction: Array  # Friction coefficient [-]
     source: Measurements  # All that its file holds
-    made: Contact  # The contact that was shown when it was loaded, with the inputs that its file gives
-    own: tuple[str, ...]
+    made: Contact  # That contact, with the inputs that its file gives
+    own: tuple[str, ...]  # Names of these inputs
 
     def places(self, contact: Contact, abscissa: Abscissa) -> Array:
         """Return the speeds at which its points are drawn: their own, or those of the contact with their Hersey number."""
-        if abscissa == "speed" or contact.INPUTS.geometry != self.made.INPUTS.geometry:
+        if contact.INPUTS.geometry != self.made.INPUTS.geometry:
             return self.speed
         measured = contact.replace(**{name: getattr(self.made, name) for name in self.own})
-        return self.speed * (hersey_scale(measured) / hersey_scale(contact))
+        now, then = (RULES[of.groups.geometry].speed_per(self.source.abscissa, of) for of in (measured, self.made))
+        return self.speed * (
+            now / then if abscissa == "speed" else now / then * hersey_scale(measured) / hersey_scale(contact)
+        )
 
 
 @dataclass(frozen=True)
@@ -131,10 +134,9 @@ def read_measured(name: str, content: bytes, contact: Contact, asked: Mapping[st
         given = {each: value for each, value in inputs.items() if each in rule.hersey_exponents}
         made = contact.replace(**given)
         factor = rule.speed_per(data.abscissa, made)
-        own = tuple(given if data.abscissa == "speed" else rule.hersey_exponents)
         mine = data.curve == k
         label = name if len(data.curves) == 1 else f"{name}: {curve}"
-        found.append(Measured(label, name, data.values[mine] * factor, data.friction[mine], data, made, own))
+        found.append(Measured(label, name, data.values[mine] * factor, data.friction[mine], data, made, tuple(given)))
     return found
 
 
