@@ -302,6 +302,18 @@ def test_a_measured_curve_is_mapped_shown_fitted_and_removed(open_page, tmp_path
     page.wait_for_function(f"!({CHART})('friction').series.some(s => s.name === 'odd.csv')")
 
 
+def test_a_measured_curve_is_read_as_the_table_fit_of_the_case_says(open_page, tmp_path):
+    page = open_page()
+    case, torque = tmp_path / "case.toml", tmp_path / "torque.csv"
+    case.write_text((EXAMPLES / "pdms_cylinder.toml").read_text() + '\n[fit]\narm = "20 mm"\n')
+    torque.write_text("Speed [mm/s],Torque [mN m],Normal Force [N]\n1,10,1\n10,4,1\n30,2,1\n")
+    at_rest(page, lambda: page.set_input_files("input[type=file]", case))
+    page.set_input_files("input[type=file]", torque)
+    page.wait_for_function(f"({CHART})('friction').series.some(s => s.id === 'measured0')")
+    series = page.evaluate(CHART, "friction")["series"]
+    assert next(s["data"][0] for s in series if s["id"] == "measured0") == pytest.approx([1e-3, 0.5])
+
+
 def test_what_was_closed_opens_again_and_no_fit_stands_there_for_another_file(open_page, tmp_path):
     page = open_page()
     names = "abcde"

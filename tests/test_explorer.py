@@ -672,6 +672,30 @@ def test_a_fit_takes_the_inputs_that_are_chosen_and_tells_intervals_and_residual
     assert chart["x"]["low"] < speeds[0] < speeds[-1] < chart["x"]["high"] and chart["x"]["unit"] == "m/s"
 
 
+def test_a_fit_on_the_page_takes_the_table_fit_of_its_case_as_the_command_does(tmp_path):
+    asked = {"free": ["boundary_friction"], "noise": "absolute", "magnitudes": True, "units": {"speed": "mm/s"}}
+    asked |= {"columns": {"speed": "v", "friction": "f"}, "priors": {"boundary_friction": {"value": 0.4, "factor": 1.1}}}
+    now = inputs.Inputs.of(START.tables | {"fit": asked})
+    rows = ["v;f", "-0.1;-0.58", "0;0", "0.1;0.6", "1;0.47", "3;0.29", "10;0.11", "30;0.04"]
+    path, case = tmp_path / "m.csv", tmp_path / "case.toml"
+    path.write_text("\n".join(rows))
+    case.write_text(toml_text(now.tables))
+    [measured] = read_file("measured", path.name, path.read_bytes(), now.contact, asked)
+    fitted = fit_measured(now, measured, lambda *_: None)
+    found, told = fitted.found["boundary_friction"], sb.fit(path, case)["boundary_friction"]
+    assert (found.value, found.interval_95) == (
+        told.value,
+        told.interval_95,
+    ) and fitted.inputs.contact.boundary_friction == found.value
+    each = inputs.Inputs.of(START.tables | {"fit": {"free": ["roughness"], "per_curve": ["roughness"]}})
+    text = "curve;speed [mm/s];friction\n" + "".join(f"{name};{row}\n" for name in "ab" for row in rows[3:])
+    measured = read_file("measured", "two.csv", text.encode(), each.contact, each.tables["fit"])
+    assert [row[0] for row in fit_measured(each, measured[0], lambda *_: None).shown["rows"]] == [
+        "roughness (a)",
+        "roughness (b)",
+    ]
+
+
 def test_columns_that_no_header_names_are_read_as_the_page_maps_them():
     content = b"A;B;C\n1;0.5;x\n10;0.2;x\n1;0.6;y\n"
     with pytest.raises(sb.InputError, match="none of which is known as speed or friction"):

@@ -214,13 +214,15 @@ class Tab:
         self.problems.clear()
         self.change(replace(found, abscissa=self.inputs.abscissa))
 
-    async def take_file(self, name: str, content: bytes, asked: dict[str, Any] | None = None) -> None:
+    async def take_file(self, name: str, content: bytes, **asked: dict[str, str]) -> None:
         """Take a case, a measured curve or a surface that the browser sent; undo brings back the inputs before."""
         kinds: dict[str, Any] = {".toml": "case"} | dict.fromkeys(SCAN_ENDINGS, "scan")
         kind = kinds.get(PurePath(name.lower()).suffix, "measured")
         self.page.show(message=f"Reading {name} ...", failed=False)
+        table = self.inputs.tables.get("fit", {})
+        table |= {key: table.get(key, {}) | each for key, each in asked.items()}
         try:
-            found = await run(FILES, read_file, kind, name, content, self.inputs.contact, asked)
+            found = await run(FILES, read_file, kind, name, content, self.inputs.contact, table)
             if kind == "case":
                 self.begin(found)
             elif isinstance(found, Scan):
@@ -250,8 +252,7 @@ class Tab:
 
     async def read_columns(self, columns: dict[str, str], units: dict[str, str]) -> None:
         """Read the last file with columns that the user named."""
-        given = {"columns": columns, "units": units}
-        await self.take_file(*self.file, {name: kept for name, each in given.items() if (kept := _filled(each))})
+        await self.take_file(*self.file, columns=_filled(columns), units=_filled(units))
 
     def show_fit(self) -> None:
         """Show what may be fitted to the measured curves of the last file."""

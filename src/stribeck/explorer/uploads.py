@@ -73,7 +73,10 @@ class Fitted:
     def shown(self) -> dict[str, Any]:
         """What the page shows of it."""
         rows, found = self.inputs.table.rows, self.found
-        inputs = [[rows[each.name].label, *(each.texts[k] for k in (0, 1, 3))] for each in found.inputs]
+        inputs = [
+            [each.label.replace(each.name, rows[each.name].label), *(each.texts[k] for k in (0, 1, 3))]
+            for each in found.inputs
+        ]
         return {"rows": inputs, "said": found.outcome.value, "notes": [*found.quality.messages, *found.notes]}
 
 
@@ -88,11 +91,9 @@ def free_inputs(now: Inputs) -> list[tuple[str, str, bool]]:
 
 
 def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object], free: Sequence[str] = ()) -> Fitted:
-    """Fit inputs to the measured curves of a file: those named, or of the case under ``[fit]``, or the usual ones."""
-    free = free or now.tables.get("fit", {}).get("free") or DEFAULT_FREE
-    case = replace(now.case, fit=FitSettings.of(now.contact))  # priors and bounds are for the command
-    found = fit(measured.source, case, free=free, on_step=on_step)
-    values = {each.name: each.value for each in found.inputs if each.name in now.fields and not each.is_factor}
+    """Fit inputs to the measured curves of a file as the command does: those named, or of the case, or the usual ones."""
+    found = fit(measured.source, now.case, free=free or None, on_step=on_step)
+    values = {each.name: float(getattr(found.contact, each.name)) for each in found.inputs if each.name in now.fields}
     after = now.edited(values)
     fitted = ", ".join(f"{now.fields[name].label.lower()} {now.table.text(name, value, 3)}" for name, value in values.items())
     curves = len(measured.source.curves)
@@ -120,13 +121,14 @@ def headers_of(name: str, content: bytes) -> list[str]:
 
 
 def read_measured(name: str, content: bytes, contact: Contact, asked: Mapping[str, Any] | None = None) -> list[Measured]:
-    r"""Return the measured curves of a file, over the speed; a table ``[fit]`` may say what its columns are.
+    r"""Return the measured curves of a file, over the speed; a table ``[fit]`` may say what its columns are, and more.
 
     .. math:: U = \frac{(\eta U)}{\eta}, \qquad U = \mathrm{Hs} \, \frac{F_N}{\eta},
               \qquad U = \mathrm{Hs} \, \frac{F_N}{\eta R} \text{ of a ball}
     """
     settings = FitSettings.of(contact)
-    settings = replace(check_fit_table(dict(asked or {}), settings.geometry), slide_to_roll=settings.slide_to_roll)
+    table = {name: each for name, each in (asked or {}).items() if name not in ("files", "file_names")}  # of several files
+    settings = replace(check_fit_table(table, settings.geometry), slide_to_roll=settings.slide_to_roll)
     with lent_file(name, content) as path:
         data = read_measurements(path, settings)
     found, rule = [], RULES[contact.groups.geometry]
@@ -204,7 +206,7 @@ Kind = Literal["case", "measured", "scan", "headers"]
 
 
 def read_file(kind: Kind, name: str, content: bytes, contact: Contact, asked: Mapping[str, Any] | None = None) -> Any:
-    """Return what a file holds; of measured curves a table ``[fit]`` may say what the columns are."""
+    """Return what a file holds; of measured curves a table ``[fit]`` may say how they are read."""
     name = shown_name(name)
     try:
         if kind == "case":
@@ -223,8 +225,6 @@ def _of_text(name: str, content: bytes, contact: Contact, asked: Mapping[str, An
     try:
         return read_measured(name, content, contact, asked)
     except InputError as problem:
-        if asked:
-            raise
         try:
             return read_scan(name, content)
         except InputError as other:
