@@ -12,6 +12,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 import weakref
 from contextlib import closing
@@ -147,6 +148,32 @@ def test_a_file_of_many_columns_does_not_keep_other_pages_waiting(server, page):
     began = time.monotonic()
     assert ask(server, f"/upload/{page}?name=wide.csv", "POST", f"{header}\n".encode())[0] == 204
     assert time.monotonic() - began < 19  # a busy machine; 0.3 s of it reads the header
+
+
+def test_a_file_of_what_is_shown_waits_for_no_slow_work_and_has_its_name():
+    from nicegui import core, ui
+    from nicegui.client import Client
+
+    from stribeck.explorer import server, tab
+    from stribeck.explorer.inputs import url
+
+    async def save():
+        core.loop = asyncio.get_running_loop()
+        start, solved = server.example(), threading.Event()
+        client = Client(ui.page("/"))
+        with client:
+            made = tab.Tab(url.decode([], start), start)
+        made.answer = made.model(start)
+        made.threads.slow.submit(solved.wait)  # as the curve of a ball, for a minute
+        made.inputs = start.replace(title="not shown yet")
+        try:
+            return await asyncio.wait_for(made.content("toml"), 10)
+        finally:
+            solved.set()
+            client.delete()
+
+    name, content = asyncio.run(save())
+    assert name == "pdms-cylinder-in-glycerol-water.toml" and b'title = "PDMS cylinder in glycerol-water"' in content
 
 
 def test_a_tab_that_is_closed_is_collected():

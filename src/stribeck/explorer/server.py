@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from stribeck.cases.reading import load_case
-from stribeck.explorer.downloads import KINDS, examples, name_of
+from stribeck.explorer.downloads import KINDS, examples
 from stribeck.explorer.inputs.choices import CHOICES, help_of_choice, typical
 from stribeck.explorer.inputs.inputs import FIELDS, GROUP_FIELDS, Inputs, from_case, help_of
 from stribeck.explorer.inputs.url import MAX_URL_LENGTH, check_length, decode
@@ -127,11 +127,11 @@ def build(start: Inputs, port: int, token: str) -> None:
         tab, kind = TABS.get(request.path_params["tab"]), request.path_params["kind"]
         if tab is None or kind not in KINDS.values():
             return Response(status_code=404)
-        content = await tab.content(kind)
-        if content is None:
+        found = await tab.content(kind)
+        if found is None:
             return Response(status_code=409)
-        name = quote(name_of(kind, tab.inputs.case.title))
-        return Response(content, media_type="application/octet-stream", headers={"x-file-name": name})
+        name, content = found
+        return Response(content, media_type="application/octet-stream", headers={"x-file-name": quote(name)})
 
     async def words(request: Request) -> Response:
         return Response(await run(FILES, words_page), media_type="text/html")

@@ -280,17 +280,17 @@ class Tab:
             self.message = fitted.report
             self.page.show(fitted=fitted.shown, charts={"residuals": residual_chart(fitted.found)})
 
-    async def content(self, kind: str) -> bytes | None:
-        """Return a file of what is shown, or None after saying why there is none."""
+    async def content(self, kind: str) -> tuple[str, bytes] | None:
+        """Return name and content of a file of what is shown, or None after saying why there is none."""
         try:
             answer = self.answer or await run(self.threads.live, self.model, self.inputs, watch=self.while_open)
-            found: bytes = await run(self.threads.slow, files.content, kind, answer, watch=self.while_open)
+            found: bytes = await run(FILES, files.content, kind, answer, watch=self.while_open)  # no curve is waited for
         except Superseded:
             return None
         except Exception as problem:
             self.complain(reason(problem))
             return None
-        return found
+        return files.name_of(kind, answer.inputs.case.title), found
 
     def code(self, kind: str) -> None:
         """Show the present state as a program or as commands, to be copied."""
