@@ -211,6 +211,7 @@ def test_with_perssons_law_beta_follows_the_roughness():
 def test_errors_that_say_nothing_are_refused():
     for errors, sentence in (
         ({"rough": 0.1}, "no input of a contact"),
+        ({"entrainment_speed": "1 mm/s"}, "give the error of speed, which follows from it"),
         ({"roughness": 0}, "must be a number such as 0.2"),
         ({"roughness": "x %"}, "is not a number of per cent"),
     ):

@@ -42,9 +42,6 @@ CURVE_POINTS = 21  # Points of the curve on which transitions lie
 
 INTERVAL_95 = 1.96  # Half-width of the 95 % interval of a normal distribution, in standard deviations
 
-# Inputs that stand in for others, and the power with which they enter; for the Poisson ratio at 1/2.
-SUBSTITUTES = {"youngs_modulus": ("modulus", 1.0), "poisson_ratio": ("modulus", 2 / 3), "entrainment_speed": ("speed", 1.0)}
-
 
 @one_blas_thread
 def propagate(
@@ -180,22 +177,23 @@ def errors_of_kept_inputs(contact: Contact, errors: Mapping[str, Any]) -> dict[s
     rows = contact.INPUTS.rows
     found: dict[str, float] = {}
     for name, error in errors.items():
-        kept, exponent = SUBSTITUTES.get(name, (name, 1.0))
-        value = getattr(contact, kept, None) if kept in rows else None
-        if value is None and kept in PART_INPUTS:
-            raise InputError(f"errors has {name}, but this contact has none: it belongs to {PART_INPUTS[kept].of}.")
+        value = getattr(contact, name, None) if name in rows else None
+        if name in contact.INPUTS.stands_for:
+            instead = contact.INPUTS.stands_for[name]
+            raise InputError(f"errors has {name}, which no contact keeps; give the error of {instead}, which follows from it.")
+        if value is None and name in PART_INPUTS:
+            raise InputError(f"errors has {name}, but this contact has none: it belongs to {PART_INPUTS[name].of}.")
         if value is None:
             raise InputError(f"errors has {show(name)}, which is no input of a contact; {known_names(name, rows)}")
         if value == 0:
             raise InputError(f"errors has {name}, which is zero: a relative error of zero has no meaning.")
         if isinstance(error, str) or hasattr(error, "magnitude"):
-            relative = relative_error(name, value, error, rows[kept].dimension)
+            relative = relative_error(name, value, error, rows[name].dimension)
         elif isinstance(error, bool) or not isinstance(error, int | float) or not 0 < error < 3:
             raise InputError(f"the error of {name} = {show(error)} must be a number such as 0.2, which is 20 %, or text.")
         else:
             relative = float(error)
-        sigma = exponent * math.sqrt(math.log1p(relative**2))
-        found[kept] = math.hypot(found.get(kept, 0.0), sigma)
+        found[name] = math.sqrt(math.log1p(relative**2))
     for name in found.keys() & PART_INPUTS.keys():
         _check_range(PART_INPUTS[name], getattr(contact, name), found[name])
     return {name: found[name] for name in rows if name in found}
