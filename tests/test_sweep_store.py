@@ -4,6 +4,7 @@ import functools
 import os
 import re
 import shutil
+import signal
 import sqlite3
 import sys
 from contextlib import closing
@@ -159,6 +160,20 @@ def test_the_command_exports_every_number_text_and_unit(subtests, copy, filled, 
             kept_as_it_is = call(capsys, "sweep", file, "--out", store, "--export", path)
             assert kept_as_it_is.code == 2 and "exists already and is kept" in kept_as_it_is.err
             assert call(capsys, "sweep", file, "--out", store, "--export", path, "--force").code == 0
+
+
+def test_ctrl_c_does_not_stop_the_export_of_a_finished_sweep(copy, filled, tmp_path, capsys, monkeypatch):
+    store, file = copy
+    lose(store, 5)
+    dataset = type(filled).to_dataset
+
+    def interrupted(sweep):  # "Interrupted; nothing was written." stood there, with all states in the store
+        signal.raise_signal(signal.SIGINT)
+        return dataset(sweep)
+
+    monkeypatch.setattr(type(filled), "to_dataset", interrupted)
+    answer = call(capsys, "sweep", file, "--out", store, "--export", tmp_path / "sweep.csv")
+    assert (answer.code, answer.err) == (0, "") and len(read(tmp_path / "sweep.csv")) == 12
 
 
 @pytest.mark.quick

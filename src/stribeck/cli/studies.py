@@ -53,12 +53,13 @@ def sweep_command(
 
         def report_progress(state: SweepProgress) -> None:
             progress(state.done, state.total, state.text, state.seconds_left)
+            progress.writes = state.done == state.total
 
         found = sb.sweep(plan, out, workers=workers, scheduler=scheduler, on_progress=report_progress)
-    written = []
-    if export is not None and not found.interrupted:
-        write_data(found.to_dataset(), export, force=force)
-        written.append(str(export))
+        written = []
+        if export is not None and not found.interrupted:
+            write_data(found.to_dataset(), export, force=force)
+            written.append(str(export))
     complain(found.note if json else "", 0)
     said = [*filter(None, [plan.title]), str(found)]
     answer(json, lambda: found.to_dict() | {"files": written}, lambda: said, written=written)
