@@ -342,6 +342,7 @@ WRONG_PARTS = [
     ("solid", {"model": "prony", "layer_thickness": "2 mm"}, r"\[solid\] relaxation_times is missing, which .* needs"),
     ("solid", {"layer_thicknes": "2 mm"}, r"\] layer_thicknes = '2 mm' is not a .* did you mean layer_th"),
     ("solid", {"poisson_ratio": 0.5}, r"\[solid\] layer_thickness is missing"),
+    ("check", {"thermal_thining": "0.04 1/K"}, "is not a known key; did you mean thermal_thinning"),
     ("solid", {"modulus_ratio": 3}, r"\[solid\] retardation_time is missing, which .* needs; add .* = \"10 ms\""),
     ("solid", {"retardation_time": "1 s", "moduli": [1]}, r"\[solid\] .* two descriptions"),
     ("solid", {"relaxation_times": "1 s", "moduli": [1]}, r"\[solid\] relaxation_times = '1 s' must be a list"),

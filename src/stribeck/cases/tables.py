@@ -82,17 +82,18 @@ def advice_on(key: str, known: Iterable[str], file: Mapping[str, Iterable[str]] 
     names = list(known)
     if MEANT.get(key) in names:
         return f"write {MEANT[key]}"
+    whole = [name for name in names if len(key) >= MIN_PREFIX_LETTERS and name.startswith(key.lower())]
+    # Only a slip of the pen is taken for another key: pressure_viscosity is no viscosity.
+    near = whole or difflib.get_close_matches(key.lower(), names, n=1, cutoff=MIN_SIMILARITY)
     text = "_" + re.sub(r"[^a-z0-9]+", "_", key.lower()).strip("_") + "_"
-    absent = next((hint for words, hint in _HINTS if any(f"_{word}_" in text for word in words)), "")
+    words_here = ((word, hint) for words, hint in _HINTS for word in words if f"_{word}_" in text)
+    absent = next((hint for word, hint in words_here if not (near and word in near[0])), "")
     if absent:
         return absent
     for table, keys in (file or {}).items():
         if key in keys or MEANT.get(key, key) in keys:
             where = f"in the table [{table}]" if table else "at the top of the file, before the first table"
             return f"it belongs {where}"
-    whole = [name for name in names if len(key) >= MIN_PREFIX_LETTERS and name.startswith(key.lower())]
-    # Only a slip of the pen is taken for another key: pressure_viscosity is no viscosity.
-    near = whole or difflib.get_close_matches(key.lower(), names, n=1, cutoff=MIN_SIMILARITY)
     return f"did you mean {near[0]}" if near else f"known are {', '.join(names)}"
 
 
