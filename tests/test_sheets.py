@@ -5,6 +5,7 @@ import re
 import runpy
 from pathlib import Path
 
+import matplotlib as mpl
 import pytest
 from command_line import EXAMPLES, call, case_text
 
@@ -125,11 +126,14 @@ def test_the_pdf_and_a_contact_outside(tmp_path, capsys, monkeypatch):
 
     monkeypatch.setattr("stribeck.regimes.overview.regime_margins", lambda *_, **__: RegimeMargins("mixed", (), ()))
     case = tmp_path / "steel.toml"
-    case.write_text(
-        case_text({"modulus": '"115 GPa"', "load": '"1 kN/m"', "speed": '"1 m/s"', "roughness": '"0.3 +- 0.1 um"'})
-    )
-    answer = call(capsys, "report", case, "-o", tmp_path / "steel.pdf")
+    text = case_text({"modulus": '"115 GPa"', "load": '"1 kN/m"', "speed": '"1 m/s"', "roughness": '"0.3 +- 0.1 um"'})
+    case.write_text(text.replace("A case", "A case with a long title " * 6))
+    with mpl.rc_context({"pdf.compression": 0}):
+        answer = call(capsys, "report", case, "-o", tmp_path / "steel.pdf")
     assert (answer.code, answer.err) == (0, "")
+    page = (tmp_path / "steel.pdf").read_bytes().decode("latin-1")
+    lines = ["".join(re.findall(r"\(((?:\\.|[^\\)])*)\)", each)) for each in re.findall(r"\[(.*?)\]\s+TJ", page, re.DOTALL)]
+    assert sum("long title" in each for each in lines) == 2 and max(map(len, lines)) < 120  # else it leaves the page
     assert answer.out.startswith("Outside the range of the model: ") and "Probability of each regime" in answer.out
     assert (tmp_path / "steel.pdf").read_bytes().startswith(b"%PDF")
     assert call(capsys, "report", case, "-o", tmp_path / "steel.pdf").code == 2  # kept

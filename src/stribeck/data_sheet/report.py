@@ -268,8 +268,7 @@ def _write_pdf(content: Content, path: Path) -> None:
 
 def _lines(content: Content) -> Iterator[tuple[str, bool]]:
     """Yield the lines of the PDF, and whether each is a heading."""
-    for line in textwrap.wrap(content.headline, PAGE_COLUMNS):
-        yield line, True
+    yield from _wrapped(content.headline, strong=True)
     yield from _wrapped(content.checks.first_line)
     yield from _part(content.title, (), content.sentences)
     for section in content.sections:
@@ -281,7 +280,7 @@ def _lines(content: Content) -> Iterator[tuple[str, bool]]:
 def _part(heading: str, table: Sequence[Sequence[str]], paragraphs: Sequence[str]) -> Iterator[tuple[str, bool]]:
     """Yield the lines of a part of the page; the last column of a table is wrapped."""
     yield "", False
-    yield heading, True
+    yield from _wrapped(heading, strong=True)
     widths = [max(map(len, column)) + 2 for column in [*zip(*table, strict=True)][:-1]]
     for *cells, last in table:
         before = "".join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True))
@@ -290,6 +289,6 @@ def _part(heading: str, table: Sequence[Sequence[str]], paragraphs: Sequence[str
         yield from _wrapped(each)
 
 
-def _wrapped(text: str, indent: str = "") -> Iterator[tuple[str, bool]]:
+def _wrapped(text: str, indent: str = "", strong: bool = False) -> Iterator[tuple[str, bool]]:
     for line in textwrap.wrap(text, PAGE_COLUMNS, subsequent_indent=indent):
-        yield line, False
+        yield line, strong
