@@ -71,6 +71,7 @@ BAD_CASES = [
     ({"contact": {"radios": '"10 mm"'}}, "[contact] radios = '10 mm' is not a known key; did you mean radius"),
     ({"contact": {"viscosity": '"50 mPaxs"'}}, "viscosity = '50 mPaxs' has the unknown unit"),
     ({"contact": {"beta": "1e-200"}}, "leave the range of double precision"),
+    ({"contact": {"speed": '"1e-323 m/s"'}}, "leave the range of double precision"),  # its group is zero, which would be rest
     ({"curve": {"range": '["1 m/s", "1 mm/s"]'}}, "range = ['1 m/s', '1 mm/s'] must increase; write the lowest speed first"),
     ({"solver": {"rtol": "1e-20"}}, "rtol = 1e-20 must be a number from 1e-11 to 1e-2"),
 ]

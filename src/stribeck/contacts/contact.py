@@ -471,8 +471,9 @@ class Contact(Parts):
     def _check_scales(self) -> None:
         """Refuse values, each possible alone, whose groups leave the range of double precision."""
         try:
-            scales = self.hertz
-            in_range = math.isfinite(scales.indentation * scales.pressure) and self._base_groups is not None
+            scales, groups = self.hertz, self._base_groups
+            lost = any(getattr(self, name) > 0 and getattr(groups, name) == 0 for name in ("speed", "roughness"))
+            in_range = math.isfinite(scales.indentation * scales.pressure) and not lost
         except (InputError, ZeroDivisionError, OverflowError):
             in_range = False
         if not in_range:
