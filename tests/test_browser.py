@@ -308,6 +308,7 @@ def test_a_measured_curve_is_read_as_the_table_fit_of_the_case_says(open_page, t
     case.write_text((EXAMPLES / "pdms_cylinder.toml").read_text() + '\n[fit]\narm = "20 mm"\n')
     torque.write_text("Speed [mm/s],Torque [mN m],Normal Force [N]\n1,10,1\n10,4,1\n30,2,1\n")
     at_rest(page, lambda: page.set_input_files("input[type=file]", case))
+    assert ".xlsx" in page.locator("input[type=file]").get_attribute("accept").split(",")
     page.set_input_files("input[type=file]", torque)
     page.wait_for_function(f"({CHART})('friction').series.some(s => s.id === 'measured0')")
     series = page.evaluate(CHART, "friction")["series"]
@@ -318,7 +319,7 @@ def test_what_was_closed_opens_again_and_no_fit_stands_there_for_another_file(op
     page = open_page()
     names = "abcde"
     odd, many, other = (tmp_path / f"{each}.csv" for each in ("odd", "many", "other"))
-    odd.write_text("A;B\n1;0.5\n2;0.4\n")
+    odd.write_text("log speed;friction\n1;0.5\n2;0.4\n")
     rows = [f"{name},{speed},{0.5 - 0.01 * k - speed / 100}" for k, name in enumerate(names) for speed in (1, 10, 30)]
     many.write_text("\n".join(["curve,speed [mm/s],friction", *rows]))
     other.write_text("speed [mm/s],friction\n1,0.5\n10,0.4\n30,0.3\n")
@@ -328,6 +329,8 @@ def test_what_was_closed_opens_again_and_no_fit_stands_there_for_another_file(op
         page.locator(".q-dialog").get_by_role("button", name="Close").click()
         page.wait_for_selector(".q-dialog", state="detached")
         page.set_input_files("input[type=file]", odd)
+        page.locator(".mapping").get_by_text("Say below which is which.").wait_for()
+        assert ".." not in page.locator(".mapping p").inner_text()
         page.locator(".mapping").get_by_role("button", name="Cancel").click()
     page.set_input_files("input[type=file]", many)
     page.wait_for_function(f"({CHART})('friction').series.filter(s => s.id.startsWith('measured')).length === {len(names)}")

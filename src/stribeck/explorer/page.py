@@ -21,7 +21,7 @@ UPDATING_TEXT = "Updating ..."  # Text while something is still being computed.
 
 FRAME_TIMEOUT = 2.0  # Time after which a browser that does not answer gets the next picture nevertheless [s].
 
-FILE_ENDINGS = (".toml", ".csv", ".txt", ".tsv", ".dat", *SCAN_ENDINGS)
+FILE_ENDINGS = (".toml", ".csv", ".txt", ".tsv", ".dat", ".xlsx", *SCAN_ENDINGS)
 
 CLOSED_THERE = ("complaint", "code", "mapping", "fitting", "fitted")  # Parts that the browser closes without a word to Python
 

@@ -246,7 +246,7 @@ class Tab:
             headers = await run(FILES, read_file, "headers", name, content, self.inputs.contact)
         except InputError:
             return False
-        wrong = said.partition("; say which")[0]
+        wrong = said.partition("; say which")[0].removesuffix(".")
         self.page.show(mapping={"file": name, "said": wrong, "headers": headers, "meanings": MEANINGS})
         return len(headers) > 1
 
