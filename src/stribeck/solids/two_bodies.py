@@ -26,7 +26,8 @@ __all__ = ["TwoBodies"]
 class TwoBodies(Described, title="Parameters"):
     """Two bodies of different shapes, such as a layer and a half-space.
 
-    Two half-spaces need nothing of this: they are one with the modulus of both.
+    Two half-spaces need nothing of this: they are one with the modulus of both.  Either moves as the substrate: give a body
+    that remembers only where it passes through the contact with the speed u1.
 
     Raises
     ------
