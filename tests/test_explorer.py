@@ -31,7 +31,7 @@ from stribeck.explorer import downloads as files
 from stribeck.explorer.answer import Answerer, Pinned
 from stribeck.explorer.inputs import choices, inputs, url
 from stribeck.explorer.inputs.inputs import History
-from stribeck.explorer.page import parts_of
+from stribeck.explorer.page import form_of, parts_of
 from stribeck.explorer.server import words_page
 from stribeck.explorer.tab import Threads, run
 from stribeck.explorer.uploads import (
@@ -125,6 +125,16 @@ def test_a_group_moves_load_speed_and_roughness_so_that_the_other_groups_stay(su
                 assert inputs.value_of(moved, other) == pytest.approx(wanted, rel=5e-3 if other == name else 1e-12)
             changed = {key for key in start.fields if getattr(moved.contact, key) != getattr(start.contact, key)}
             assert changed <= {"load", "speed", "roughness"}
+
+
+def test_every_group_that_is_shown_can_be_moved_whatever_the_shape_of_the_body():
+    assert [row["name"] for row in form_of(START, {})["groups"]] == list(inputs.GROUP_FIELDS)
+    for shape in choices.CHOICES["shape"].options:
+        with suppress(sb.InputError):  # what comes from a file
+            now = choices.choose(START, "shape", shape)
+        for row in form_of(now, {})["groups"]:
+            moved = inputs.with_slider(now, row["name"], row["place"] + 0.1)
+            assert inputs.value_of(moved, row["name"]) == pytest.approx(10 ** (row["place"] + 0.1), rel=0.01)
 
 
 def test_a_slider_stops_at_its_ends_and_a_value_beyond_stands_there():

@@ -186,7 +186,7 @@ export default {
           <div class="choice-row"><span class="name">Fluid friction</span><div class="choice"><q-btn-toggle no-caps unelevated dense aria-label="definition"
             :options="optionsOf('definition')" :model-value="chosen.definition" @update:model-value="value => act('choose', 'definition', value)"/></div></div>
         </fold>
-        <fold name="groups" title="Dimensionless groups" :wrong="isWrong(groups)">
+        <fold name="groups" title="Dimensionless groups" :wrong="isWrong(groups)" v-if="groups.length">
           <knob v-for="each in groups" :key="each.name" :now="each" :busy="isBusy" @act="forward"></knob>
           <p class="caption">Changing one group changes speed, load and roughness; the other two groups stay fixed.</p>
         </fold>

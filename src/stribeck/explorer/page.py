@@ -58,7 +58,8 @@ def form_of(now: Inputs, problems: Problems) -> dict[str, Any]:
         "title": now.case.title,
         "geometry": now.table.geometry,
         "rows": [row_of(now, name) | problems.get(name, {}) for name in now.fields],
-        "groups": [row_of(now, name) | problems.get(name, {}) for name in GROUP_FIELDS],
+        # Of another shape the groups follow from its dry contact, and no one of them can be moved alone.
+        "groups": [row_of(now, name) | problems.get(name, {}) for name in GROUP_FIELDS if now.contact.profile is None],
         "lists": [list_of(now, name) | problems.get(name, {}) for name in CHOICES],
         "chosen": {"definition": now.case.definition, "abscissa": now.abscissa},
     }
