@@ -196,6 +196,14 @@ def test_transitions_move_with_the_inputs():
         pytest.approx(spread.value * factor, rel=1e-3),
     )
     assert spread.value == pytest.approx(0.0276, rel=1e-2)
+    # Less beta, and asperities lose the load at far lower speeds; more, and at somewhat higher ones.
+    seal = sb.load_case(EXAMPLES / "lip_seal.toml").contact
+    name, sigma = "fluid carries 5 % of the load", math.sqrt(math.log1p(0.04))
+    spread = sb.propagate(seal, {"beta": 0.2})[name]
+    for end, factor in zip(spread.interval_68, (math.exp(-sigma), math.exp(sigma)), strict=True):
+        curve = sb.stribeck_curve(seal.replace(beta=seal.beta * factor), points=21, rtol=1e-3)
+        assert end == pytest.approx(next(mark.value for mark in curve.transitions if mark.name == name), rel=1e-2)
+    assert spread.value / spread.interval_68[0] > 1.5 * spread.interval_68[1] / spread.value
 
 
 def test_with_perssons_law_beta_follows_the_roughness():

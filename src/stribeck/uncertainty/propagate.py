@@ -86,8 +86,9 @@ def propagate(
     -----
     20 000 samples, the same in every call, are read off the atlas, or between up to 120 solved states with derivatives, at
     both ends of the interval of friction and anywhere, until further ones lie within 5 % of its width of where they are read
-    (``test_data_sheet.py``); ``notes`` say where they do not.  Transitions move to first order, and are left out where their
-    interval leaves the speeds that were searched.  With Persson's law ``beta`` follows the roughness unless it has an error.
+    (``test_data_sheet.py``); ``notes`` say where they do not.  Transitions move to either side as far as by one standard
+    error of each input alone, and are left out where that loses them or their interval leaves the speeds that were searched.
+    With Persson's law ``beta`` follows the roughness unless it has an error.
     """
     definition = check_definition(definition)
     checked_kind("contact", contact, Contact, "a LineContact or PointContact")
@@ -241,7 +242,7 @@ def _spread(name: str, label: str, value: float, samples: Array, dimension: str 
 
 
 def _transitions(contact: Contact, sigmas: Mapping[str, float], definition: Definition) -> list[Spread]:
-    """Return the speeds of minimum and transitions, which move with each input to first order."""
+    """Return the speeds of minimum and transitions, moved to either side as far as by each input alone."""
 
     def marks(each: Contact) -> tuple[dict[str, float], Array]:
         curve = stribeck_curve(each, points=CURVE_POINTS, rtol=1e-3, definition=definition)
@@ -250,21 +251,23 @@ def _transitions(contact: Contact, sigmas: Mapping[str, float], definition: Defi
         return {mark.name: mark.value for mark in curve.transitions}, curve.values[[0, -1]]
 
     start, searched = marks(contact)
-    variances = dict.fromkeys(start, 0.0)
+    falls, rises = dict.fromkeys(start, 0.0), dict.fromkeys(start, 0.0)  # Variances of the logarithm to either side
     for name, sigma in sigmas.items():
         if name == "speed":
             continue
-        factor = math.exp(sigma)
-        moved, _ = marks(
-            contact.replace(**{each: getattr(contact, each) * factor for each in inputs_tied_to(contact, name, sigmas)})
-        )
-        for mark, value in start.items():
-            if mark in moved:
-                variances[mark] += math.log(moved[mark] / value) ** 2
+        tied = inputs_tied_to(contact, name, sigmas)
+        for factor in (math.exp(-sigma), math.exp(sigma)):
+            moved, _ = marks(contact.replace(**{each: getattr(contact, each) * factor for each in tied}))
+            for mark, value in start.items():
+                change = math.log(moved[mark] / value) if mark in moved else math.nan
+                falls[mark] += change**2 if change < 0 else 0.0 if change >= 0 else math.inf
+                rises[mark] += change**2 if change > 0 else 0.0
     found = []
     for mark, value in start.items():
-        factors = [math.exp(z * math.sqrt(variances[mark])) for z in (1.0, INTERVAL_95)]
-        (low, high), (lowest, highest) = ((value / factor, value * factor) for factor in factors)
+        below, above = math.sqrt(falls[mark]), math.sqrt(rises[mark])
+        (low, high), (lowest, highest) = (
+            (value * math.exp(-z * below), value * math.exp(z * above)) for z in (1.0, INTERVAL_95)
+        )
         if not searched[0] <= lowest <= highest <= searched[1]:
             continue  # it may lie anywhere beyond the speeds that were searched
         label = f"speed of the {mark}" if mark == Transition.MINIMUM else f"speed where {mark}"
