@@ -87,7 +87,7 @@ def advice_on(key: str, known: Iterable[str], file: Mapping[str, Iterable[str]] 
     near = whole or difflib.get_close_matches(key.lower(), names, n=1, cutoff=MIN_SIMILARITY)
     text = "_" + re.sub(r"[^a-z0-9]+", "_", key.lower()).strip("_") + "_"
     words_here = ((word, hint) for words, hint in _HINTS for word in words if f"_{word}_" in text)
-    absent = next((hint for word, hint in words_here if not (near and word in near[0])), "")
+    absent = next((hint for word, hint in words_here if text == f"_{word}_" or not (near and word in near[0])), "")
     if absent:
         return absent
     for table, keys in (file or {}).items():
