@@ -20,7 +20,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from command_line import EXAMPLES
+from command_line import EXAMPLES, case_text
 
 import stribeck as sb
 from stribeck.cases.law import SOURCES
@@ -704,6 +704,22 @@ def test_a_fit_on_the_page_takes_the_table_fit_of_its_case_as_the_command_does(t
         "roughness (a)",
         "roughness (b)",
     ]
+
+
+def test_a_fitted_roughness_scales_a_surface_on_the_page_as_by_the_command(tmp_path):
+    surface = {"h_rms": '"1 um"', "hurst": "0.8", "longest_wavelength": '"100 um"', "shortest_wavelength": '"1 um"'}
+    own = dict.fromkeys(("roughness", "alpha", "beta"))
+    path, case = tmp_path / "m.csv", tmp_path / "case.toml"
+    case.write_text(case_text(own | {"law": '"persson"'}, surface=surface))
+    path.write_text("speed [mm/s],friction\n0.1,0.65\n3,0.45\n10,0.28\n30,0.12\n100,0.08\n")
+    now = inputs.from_case(sb.load_case(case))
+    [measured] = read_measured(path.name, path.read_bytes(), now.contact)
+    fitted, told = fit_measured(now, measured, lambda *_: None, ["roughness"]), sb.fit(path, case, free=["roughness"])
+    assert (fitted.found["roughness"].value, fitted.found.contact.beta) == pytest.approx(
+        (told["roughness"].value, told.contact.beta), rel=1e-6
+    )
+    shown = fitted.inputs.contact
+    assert (shown.roughness, shown.beta) == pytest.approx((told.contact.roughness, told.contact.beta), rel=1e-6)
 
 
 def test_columns_that_no_header_names_are_read_as_the_page_maps_them():

@@ -92,9 +92,11 @@ def free_inputs(now: Inputs) -> list[tuple[str, str, bool]]:
 
 def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object], free: Sequence[str] = ()) -> Fitted:
     """Fit inputs to the measured curves of a file as the command does: those named, or of the case, or the usual ones."""
-    found = fit(measured.source, now.case, free=free or None, on_step=on_step)
+    # On the page a surface gives its shape alone; its roughness scales it nevertheless, as where it gives its numbers too.
+    settings = replace(now.case.fit, scales_surface="surface" in now.tables)
+    found = fit(measured.source, replace(now.case, fit=settings), free=free or None, on_step=on_step)
     values = {each.name: float(getattr(found.contact, each.name)) for each in found.inputs if each.name in now.fields}
-    after = now.edited(values)
+    after = now.edited({"beta": found.contact.beta} | values if found.contact.beta != now.contact.beta else values)
     fitted = ", ".join(f"{now.fields[name].label.lower()} {now.table.text(name, value, 3)}" for name, value in values.items())
     curves = len(measured.source.curves)
     number = "both" if curves == 2 else f"all {curves}"
