@@ -28,7 +28,7 @@ ARGUMENTS = {
 }
 """Scripts, and what makes them small; those apart need a browser, valgrind or minutes."""
 
-LONG = {"batch_rate", "cost", "curve_bound", "explorer_curves", "peers", "point_speed", "surface_errors"}
+LONG = {"batch_rate", "cost", "curve_bound", "explorer_curves", "mutants", "peers", "point_speed", "surface_errors"}
 """Those that take a while even so."""
 
 APART = {

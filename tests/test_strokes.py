@@ -169,7 +169,7 @@ def test_a_speed_that_rises_and_falls_has_the_friction_of_an_independent_scheme(
 def test_a_film_that_thins_and_ends_turns_with_the_motion():
     """The way back is the mirror image of the way out; that of a Newtonian film is so below."""
     contact = CONTACT.replace(cavitation="exit", fluid=sb.fluids.Carreau("1 ms", 0.8))
-    found = sb.stroke(contact, sine(8), steps=32, cycles=2)
+    found = sb.stroke(contact, sine(8), steps=40, cycles=2)
     for name in ("contact_load_share", "friction_fluid", "minimum_film_thickness"):
         out, back = np.abs(getattr(found, name)[16:33]), np.abs(getattr(found, name)[32:49])
         assert np.allclose(out, back, atol=0.01 * back.max()), name
@@ -195,7 +195,7 @@ def test_a_contact_that_runs_into_a_thick_wake_is_flooded():
 def test_a_contact_that_runs_into_a_thin_wake_draws_in_no_more_than_that():
     """On the fast way back the film is about that of the slow way out, a third of that of a flooded inlet."""
     contact, motion = CONTACT.replace(cavitation="exit"), out_and_back(0.1 * SPEED, SPEED)
-    own, few = (sb.stroke(contact, motion, steps=steps, inlet="own-wake") for steps in (200, 40))
+    own, few = (sb.stroke(contact, motion, steps=steps, inlet="own-wake") for steps in (140, 40))
     slow, flooded = (sb.solve(contact.replace(speed=part * SPEED)) for part in (0.1, 1.0))
     film = slow.flux_gap * contact.hertz.indentation
     passed = 2 * np.abs(own.right_flow[-1]) / SPEED
@@ -210,14 +210,14 @@ def test_a_contact_that_runs_into_a_thin_wake_draws_in_no_more_than_that():
 def test_no_liquid_comes_out_of_a_wake_that_has_not_gone_into_it():
     """On no position of the way back has it drawn in more than it has left from there on: a flooded inlet has."""
     contact = CONTACT.replace(cavitation="exit")
-    own, flooded = (sb.stroke(contact, sine(8), steps=48, cycles=2, inlet=inlet) for inlet in ("own-wake", "flooded"))
+    own, flooded = (sb.stroke(contact, sine(8), steps=40, cycles=2, inlet=inlet) for inlet in ("own-wake", "flooded"))
     for found, holds in ((own, True), (flooded, False)):
-        for flow, turn in ((found.right_flow, 60), (-found.left_flow, 36)):
+        for flow, turn in ((found.right_flow, 50), (-found.left_flow, 30)):
             gone = np.concatenate([[0.0], np.cumsum(0.5 * (flow[1:] + flow[:-1]) * np.diff(found.time))])
-            drawn, left = gone[turn] - gone[turn : turn + 25], gone[turn] - gone[turn - 24 : turn + 1][::-1]
+            drawn, left = gone[turn] - gone[turn : turn + 21], gone[turn] - gone[turn - 20 : turn + 1][::-1]
             assert bool((drawn < left + 0.01 * np.ptp(gone)).all()) is holds
     for name in ("friction_fluid", "minimum_film_thickness"):  # a film that ends turns with the motion
-        out, back = np.abs(getattr(flooded, name)[24:49]), np.abs(getattr(flooded, name)[48:73])
+        out, back = np.abs(getattr(flooded, name)[20:41]), np.abs(getattr(flooded, name)[40:61])
         assert np.allclose(out, back, atol=0.01 * back.max()), name
     last = own.last_cycle
     assert np.abs(own.friction[last]).max() > 1.2 * np.abs(flooded.friction[last]).max()

@@ -12,11 +12,13 @@ Where errors count, a value may carry its own: ``"1.0 +- 0.2 um"``, ``"46 cSt +-
 
 from __future__ import annotations
 
+import functools
 import inspect
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, TypeVar, cast, dataclass_transform
 
 import numpy as np
@@ -257,12 +259,14 @@ def law(kind: Kind) -> Kind:
     return cast("Kind", made)
 
 
-def numbers_of(law: type | None) -> dict[str, Input]:
+def _numbers_of(law: type | None) -> MappingProxyType[str, Input]:
     """Return the numbers that a class declares, by name, in the order of its arguments; none of no law."""
-    if law is None:
-        return {}
-    found = {name: each for kind in reversed(law.__mro__) for name, each in vars(kind).items() if isinstance(each, Input)}
-    return {name: found[name] for name in getattr(law, "__dataclass_fields__", {}) if name in found}
+    kinds = () if law is None else reversed(law.__mro__)
+    found = {name: each for kind in kinds for name, each in vars(kind).items() if isinstance(each, Input)}
+    return MappingProxyType({name: found[name] for name in getattr(law, "__dataclass_fields__", {}) if name in found})
+
+
+numbers_of: Callable[[type | None], MappingProxyType[str, Input]] = functools.cache(_numbers_of)
 
 
 def needed_of(law: type | None) -> tuple[str, ...]:
