@@ -659,6 +659,11 @@ def test_pinned_contacts_stand_beside_the_present_one(answer):
     friction = sb.solve(START.contact.replace(load=15)).friction(definition="balanced").total
     [shown] = [row[2] for row in rows if row[0] == "Friction µ"]
     assert float(shown) == pytest.approx(friction, rel=1e-3)
+    ball = pinned("ball", BALL.contact)
+    mixed = table.comparison(replace(answer, pins=[ball, pinned("same", START.contact)]))
+    hersey = {row[0]: row[1:] for row in mixed if row[0].startswith("Hersey number")}
+    own, other = (f"{each.hersey_number:.4g}" for each in (START.contact, BALL.contact))
+    assert sorted(hersey.values()) == sorted([[own, "", own], ["", other, ""]])  # each of a cylinder or of a ball
 
 
 def test_a_fit_takes_the_inputs_that_are_chosen_and_tells_intervals_and_residuals():

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Any
 
 from stribeck.contacts.friction import Definition
@@ -166,13 +167,13 @@ def comparison(answer: Answer) -> list[list[str]]:
         return []
     states: list[tuple[str, BaseSolution, Definition]] = [("present", answer.solution, answer.inputs.case.definition)]
     states += [(pin.name, pin.state, pin.definition) for pin in answer.pins]
-    found: dict[str, list[str]] = {"": [], "Regime": [], "Friction µ": []}
+    columns = []
     for name, state, definition in states:
         rows = {row.key: row for row in state_rows(state, definition)}
         said = {"": name, "Regime": regime_of_state(state, definition), "Friction µ": rows[f"friction_{definition}"].text}
-        for label, text in (said | {rows[key].label: rows[key].text for key in COMPARED}).items():
-            found.setdefault(label, []).append(text)
-    return [[label, *texts] for label, texts in found.items()]
+        columns.append(said | {rows[key].label: rows[key].text for key in COMPARED})
+    # The Hersey number of a ball is another one than that of a cylinder.
+    return [[label, *(each.get(label, "") for each in columns)] for label in dict.fromkeys(chain(*columns))]
 
 
 def change_rows(answer: Answer) -> list[list[list[str]]]:
