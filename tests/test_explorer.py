@@ -995,6 +995,10 @@ def test_a_pin_and_a_measured_curve_are_drawn_over_the_chosen_abscissa(answer):
         [pytest.approx(1e-2 * hersey, rel=1e-5), 0.2],
     ]
     assert series["twice"][0][0] == pytest.approx(2 * hersey * answer.curve.speed[0], rel=1e-5)
+    kept = pinned("kept", contact, "published", answer.speeds)  # whatever is chosen for the present one
+    [drawn] = [s["data"] for s in charts.friction_chart(replace(answer, pins=[kept]))["series"] if s["name"] == "kept"]
+    assert drawn[60][1] == pytest.approx(kept.curve.found.at(kept.curve.speed[60]).friction, rel=1e-5)
+    assert drawn[60][1] != pytest.approx(answer.curve.sizes["balanced"][60], rel=1e-3)
     assert series["present point"][0][0] == pytest.approx(contact.hersey_number, rel=1e-5)
 
 

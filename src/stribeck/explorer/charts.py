@@ -69,7 +69,7 @@ def friction_chart(answer: Answer) -> Options:
             series.append(_regime_bands(curve, answer.speeds, scale))
     for i, pin in enumerate(answer.pins):
         if pin.curve is not None:
-            values = pin.curve.sizes[chosen]
+            values = pin.curve.sizes[pin.definition]
             heights += _range(values)
             factor = 1.0 if over_speed else hersey_scale(pin.contact)
             series.append(line(f"pin{i}", pin.name, pin.curve.speed * factor, values))

@@ -159,7 +159,7 @@ def figure_of(shown: Answer, what: str) -> Any:
         assert pin.curve is not None
         places = pin.curve.speed * (hersey_scale(pin.contact) if hersey else 1.0)
         look = {"color": SERIES[-1 - i % len(SERIES)], "ls": (0, (3 + 2 * i, 2)), "lw": 1.4, "label": pin.name}
-        added.append((places, pin.curve.sizes[inputs.case.definition], look))
+        added.append((places, pin.curve.sizes[pin.definition], look))
     for each in shown.measured:
         places = each.places(inputs.contact, inputs.abscissa) * (hersey_scale(inputs.contact) if hersey else 1.0)
         added.append((places, each.friction, {"fmt": "o", "ms": 4, "mfc": "none", "mec": INK, "label": each.name}))
