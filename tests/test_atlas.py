@@ -251,6 +251,20 @@ OUTSIDE = [
 ]
 
 
+def test_a_curve_that_leaves_the_box_is_refused_when_it_is_made_and_one_without_speeds_ends_at_it(subtests):
+    """It was made, and none of its numbers could be read."""
+    given = {"method": "atlas", "boundary_friction": 0.5, "beta": 0.1}
+    for speed, load, kappa, said in OUTSIDE:
+        ends = sorted((1e-4, speed))
+        with subtests.test(said), pytest.raises(sb.InputError, match=re.escape(said)):
+            sb.stribeck_curve(speed=ends, load=load, roughness=kappa * load, points=3, **given)
+    for groups in (sb.Groups(1.0, 1e-3, 0.1), sb.Groups(1.0, 0.1, 0.1 ** (2 / 3), geometry="point")):
+        with subtests.test(groups.geometry):
+            curve = sb.stribeck_curve(groups, points=5, **given)
+            assert np.isfinite(curve.friction.total).all()
+            assert sb.atlas.covers(curve.groups).all()
+
+
 def test_outside_the_box_and_wrong_arguments_it_refuses():
     for function in (*FUNCTIONS, sb.atlas.friction_derivatives):
         for speed, load, kappa, words in OUTSIDE:

@@ -42,8 +42,9 @@ class AtlasSource(Source):
     states = 0
 
     def __post_init__(self) -> None:
-        """Refuse a geometry, model or law that the atlas does not hold."""
+        """Refuse a geometry, model or law that the atlas does not hold, and ends outside its box."""
         object.__setattr__(self, "rtol", self.table.error)
+        atlas.contact_load_share(self._groups(np.array(self.ends)))
 
     @cached_property
     def table(self) -> TableRow:

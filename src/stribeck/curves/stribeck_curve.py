@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from stribeck._types import Array
 from stribeck.asperity_friction.coulomb import as_asperity_friction, needs_area
+from stribeck.atlas.tables import table_for
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, coefficients
@@ -128,6 +129,16 @@ def stribeck_curve(
     coordinate = Coordinate(over, base)
     is_solved, is_line = check_method(method) == "solver", coordinate.geometry == "line"
     known = (0.0, math.inf) if contact is None else known_speeds(contact)
+    if not is_solved:
+        if needs_area(boundary_friction):
+            raise InputError(
+                "method = 'atlas' takes a friction coefficient: the atlas holds the load on asperities, not their real area "
+                "of contact, on which a shear stress acts. Leave method out, which solves the curve."
+            )
+        if ends is None:
+            groups = coordinate.groups_at(0.0)
+            low, high = table_for(groups).speeds(groups)
+            known = max(known[0], low / float(groups.speed)), min(known[1], high / float(groups.speed))
     grows = ends is None and is_solved and is_line and known[1] == math.inf and bool(coordinate.groups_at(0.0).roughness > 0)
     if ends is None:
         values = _automatic(coordinate, at_small_area, points, grows, known)
@@ -137,11 +148,6 @@ def stribeck_curve(
         values = ends
     check_inside(coordinate, values)
     if not is_solved:
-        if needs_area(boundary_friction):
-            raise InputError(
-                "method = 'atlas' takes a friction coefficient: the atlas holds the load on asperities, not their real area "
-                "of contact, on which a shear stress acts. Leave method out, which solves the curve."
-            )
         source = AtlasSource(coordinate, *values[[0, -1]].tolist())
         return StribeckCurve(values, len(values), FrictionPath(source, *given_friction))
     if not is_line:
