@@ -631,6 +631,12 @@ def test_the_verdict_of_the_page_is_that_of_the_check_where_the_curve_leaves_the
     assert {each.name: each.verdict for each in answer.checks}.items() <= said.items()
 
 
+def test_a_picture_has_a_verdict_when_all_checks_are_made(answer, rested):
+    said = [[each.get_text() for each in files.figure_of(shown, "curve").texts] for shown in (answer, rested)]
+    told = [any("The model applies" in text for text in texts) for texts in said]
+    assert told == [False, True] and answer.checks.headline != rested.checks.headline  # which has the minimum too
+
+
 def test_slow_work_of_a_page_ends_between_its_steps():
     ball = sb.load_case(EXAMPLES / "rubber_ball.toml").contact
     began, pool, ended = time.monotonic(), Threads(), []

@@ -90,7 +90,7 @@ class Answer:
     why: str  # Why the curve could not be solved
     diagram: Diagram | None  # The map of regimes around it
     margins: RegimeMargins | str | None  # The margins to the next regimes, or why there are none
-    stale: frozenset[str]  # Which of these three are not there yet, or belong to inputs before the present ones
+    stale: frozenset[str]  # Which of these three, and of the checks, are not there yet, or belong to inputs before the present
     profile: Profile  # The fields, in Hertz units
     plane: Field | None  # The fields on the plane of a ball, from the middle line on to one side, to which the other is equal
     speeds: tuple[float, float]  # Ends of the axis of speeds [m/s]
@@ -126,8 +126,9 @@ class Answerer:
             self._keep(key, lambda: diagram_from_atlas(contact, definition, ends, decade_of_roughness(contact)))
         diagram, is_old_diagram = self._newest("diagram", geometry, self._kept.get(key))
         margins, is_old_margins = self._newest("margins", geometry, self._kept.get(_known_key("margins", inputs)))
-        old = {"curve": is_old, "diagram": is_old_diagram, "margins": is_old_margins}
-        checks = self._keep(_known_key("checks", inputs), lambda: checks_of(_subject(inputs, solution), "state"))
+        of_state = partial(checks_of, _subject(inputs, solution), "state")
+        checks, are_some = self._keep(_known_key("checks", inputs), lambda: (of_state(), True))
+        old = {"curve": is_old, "diagram": is_old_diagram, "margins": is_old_margins, "checks": are_some}
         plane = None
         if isinstance(solution, PointSolution):
             side = np.linspace(-MAP_HALF_SIDE, MAP_HALF_SIDE, MAP_POINTS)
@@ -228,10 +229,10 @@ class Answerer:
     def _find_checks(self, inputs: Inputs, report: Report) -> Iterator[None]:
         """Make the checks that need the curve, or another one."""
         key, last = _known_key("checks", inputs), self._last_state
-        if ("all", *key) not in self._kept:
+        _, are_some = self._kept.get(key, (None, True))
+        if are_some:
             solution = last[1] if last is not None and last[0] == inputs.contact else None
-            self._put(key, checks_of(_subject(inputs, solution, report)))
-            self._put(("all", *key), True)
+            self._put(key, (checks_of(_subject(inputs, solution, report)), False))
             yield
 
     def _state(self, inputs: Inputs) -> Solution | PointSolution:

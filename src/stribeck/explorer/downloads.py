@@ -152,7 +152,7 @@ def figure_of(shown: Answer, what: str) -> Any:
         return shown.solution.plot(title=inputs.case.title)
     curve, hersey = _present_curve(shown), inputs.abscissa == "hersey"
     assert shown.curve is not None
-    band, verdict = shown.curve.band, shown.checks.headline
+    band, verdict = shown.curve.band, "" if "checks" in shown.stale else shown.checks.headline
     figure = curve.plot(title=inputs.case.title, abscissa=inputs.abscissa, band=band, verdict=verdict)
     added: list[tuple[Any, Any, dict[str, Any]]] = []
     for i, pin in enumerate(each for each in shown.pins if each.curve is not None):
