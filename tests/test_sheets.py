@@ -92,6 +92,9 @@ def test_a_report_says_everything_and_asks_no_server(content):
     assert addresses <= {"http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"}  # names, not requests
     assert not re.search(r"<script|<link|@import|url\((?!#)|src=", page)
     assert page.count("<svg") == 1 and "measured" in said.data.path
+    [data] = [each.paragraphs for each in said.sections if each.heading == "Data"]
+    other = [each for each in data if "measured with" in each]  # of the first fluid the curve is drawn
+    assert other == ["glycerol 50 %: measured with viscosity 5 mPa*s instead of 50 mPa*s, which the drawn curve has."]
     [inputs] = [each.table for each in said.sections if each.heading == "Inputs"]
     assert inputs[0][-1].startswith("Source") and any(source for *_, source in inputs[1:])
 

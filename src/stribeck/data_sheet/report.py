@@ -17,7 +17,7 @@ from typing import NamedTuple
 from stribeck.cases.case import Case
 from stribeck.cases.reading import load_case
 from stribeck.checks.check import VERDICTS, Checks
-from stribeck.contacts.contact import model_words
+from stribeck.contacts.contact import Contact, model_words
 from stribeck.contacts.parts import PART_INPUTS
 from stribeck.curves.result import StribeckCurve
 from stribeck.files.writing import PathLike, atomic_write, check_writable, need_extra, path_of
@@ -97,8 +97,21 @@ def _sections(case: Case, found: Overview, checks: Checks, data: Measurements | 
     said = [f"{each.word}: {each.sentence}" for each in checks.said]
     yield Section("Does the model apply?", verdicts, said + [f"Not checked: {each}" for each in checks.unchecked])
     if data:
-        yield Section("Data", (), [f"{len(data)} rows of {data.path or 'measured friction'}, drawn as read.", *data.notes])
+        drawn = f"{len(data)} rows of {data.path or 'measured friction'}, drawn as read."
+        yield Section("Data", (), [drawn, *_other_inputs(case.contact, data), *data.notes])
     yield Section("Notes", (), [note for note in dict.fromkeys(found.notes) if not checks.covers(note, doubts=True)])
+
+
+def _other_inputs(contact: Contact, data: Measurements) -> Iterator[str]:
+    """Yield what measured curves have in another way than the contact, beside whose curve they are drawn."""
+    for curve, inputs in zip(data.curves, data.inputs, strict=True):
+        said = [
+            f"{row.label} {format_si(inputs[name], row.dimension, 4)} instead of {format_si(own, row.dimension, 4)}"
+            for name, row in contact.INPUTS.kept.items()
+            if (own := getattr(contact, name)) is not None and inputs.get(name, own) != own
+        ]
+        if said:
+            yield f"{curve}: measured with {' and '.join(said)}, which the drawn curve has."
 
 
 def _inputs(case: Case) -> Iterator[tuple[str, str, str, str]]:
