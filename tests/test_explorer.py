@@ -1215,6 +1215,7 @@ def test_a_file_that_holds_nothing_of_use_is_refused_under_its_name(subtests):
         ("a.csv", b"x, y\nno, numbers\n", "^a.csv.* As a file of heights: a.csv"),
         ("a.x3p", b"no zip", "a.x3p is damaged|a.x3p does not start like"),
         ("m.csv", b"speed [m/s],friction\n1,0.5\n2,-1\n", "^m.csv.*row 3, column 'friction'"),
+        ("g.xyz", b"x (um) y (um) z (um)\n" + heights.encode(), "heights: g.xyz: 8 x 8 points"),
     ]:
         with subtests.test(name), pytest.raises(sb.InputError, match=f"(?s){words}"):
             read_file("measured", name, content, START.contact)
