@@ -34,6 +34,8 @@ def test_an_interval_says_which_inputs_count_as_exact(capsys):
     assert "Intervals count the errors of effective modulus and roughness as independent; " in said
     for label in ("radius", "load", "contact-law beta", "dry friction coefficient", "viscosity"):
         assert label in said.split("; ")[-1].split("count as exact")[0], label
+    others = {name: 0.1 for name, _ in contact.inputs() if name != "speed"}
+    assert "; speed counts as exact." in str(sb.propagate(contact, others, transitions=False))
     surface = sb.load_case(EXAMPLES / "rod_seal.toml").contact
     assert "beta" not in str(sb.propagate(surface, {"roughness": 0.1}, transitions=False)).split("count as exact")[0]
 

@@ -163,4 +163,4 @@ def exact_inputs(contact: Contact, errors: Collection[str]) -> str:
         if name not in errors and getattr(contact, name, None) and not (name == "beta" and follows_surface(contact, errors))
     ]
     counted = f"Intervals count the errors of {listed(known)}{' as independent' if len(known) > 1 else ''}"
-    return f"{counted}; {listed(exact)} count as exact." if exact else f"{counted}."
+    return f"{counted}; {listed(exact)} count{'s' if len(exact) == 1 else ''} as exact." if exact else f"{counted}."
