@@ -112,6 +112,19 @@ def test_the_doubt_about_a_wide_contact_names_the_thickness_of_a_layer_until_it_
     assert layered.startswith("The contact is wide") and "layer_thickness" not in layered
 
 
+def test_a_layer_that_a_body_lies_on_is_part_of_the_model_whatever_else_the_body_does(subtests):
+    """That of a viscoelastic body was judged as one that is left out: outside the range of the model."""
+    layer = sb.solids.Layer(0.8 * TRUE.hertz.half_width)
+    for body in (layer, sb.solids.StandardLinearSolid("10 ms", 3.0, layer), sb.solids.TwoBodies(layer)):
+        with subtests.test(body.name):
+            contact = TRUE.replace(solid=body)
+            found = checks_of(Subject(contact, {"layer_thickness": 2e-3}), "contact")["layer a/thickness"]
+            assert found.verdict == "fine" and "part of the model" in found.sentence
+            assert found.value == pytest.approx(1.25)
+            wide = contact.replace(modulus=1e-2 * TRUE.modulus)
+            assert "layer_thickness" not in checks_of(Subject(wide), "contact")["contact width a/R"].sentence
+
+
 @pytest.mark.quick
 def test_the_rms_slope_is_that_of_the_spectrum_behind_the_law():
     spectrum = SelfAffine(h_rms=1e-6, q0=1e5, q1=1e7, hurst=0.8)

@@ -22,6 +22,7 @@ from stribeck.contacts.notes import (
 from stribeck.fluids.fluid import Cavitation
 from stribeck.profiles.dry import dry_contact
 from stribeck.quantities.formats import format_percent, format_si
+from stribeck.solids.solid import lengths_of
 
 STIFFENING_FINE = 0.1  # Largest pressure coefficient times Hertz pressure whose effect on the film is small
 
@@ -238,13 +239,12 @@ def shape(subject: Subject) -> Check | None:
 
 def layer(subject: Subject) -> Check | None:
     """Return the check of the layer: half-width over its thickness; None where the thickness is not known."""
-    thickness = subject.fact("layer_thickness")
-    modelled = getattr(getattr(subject.contact, "solid", None), "layer_thickness", None) if subject.models("solid") else None
-    thickness = thickness if modelled is None else modelled
+    modelled = lengths_of(subject.contact.solid).thickness
+    thickness = modelled if math.isfinite(modelled) else subject.fact("layer_thickness")
     if thickness is None or thickness == 0:
         return None
     ratio = subject.contact.hertz.half_width / thickness
-    if modelled is not None:
+    if thickness == modelled:
         return Check("layer a/thickness", ratio, math.inf, "fine", "The finite thickness of the layer is part of the model.")
     meanings: dict[Verdict, str] = {
         "fine": "The layer is as good as a half-space.",

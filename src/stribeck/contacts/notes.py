@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from stribeck._types import Array
@@ -13,6 +14,7 @@ from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.fluids.fluid import Film
 from stribeck.quantities.formats import format_percent, format_si
+from stribeck.solids.solid import lengths_of
 
 # Beginnings of notes, by which outputs order them and checks find them
 HARD_PREFIX = "Hard elastohydrodynamics:"
@@ -78,7 +80,7 @@ def width_notes(contact: Contact) -> tuple[str, ...]:
             f"The body is steep: the dry contact is {slope:.2g} of its half-width deep. The half-space is accurate up to "
             f"about 0.1 and coarse at {MAX_CONTACT_SLOPE}; check modulus, load and profile.",
         )
-    layered = getattr(getattr(contact, "solid", None), "layer_thickness", None) is not None
+    layered = math.isfinite(lengths_of(contact.solid).thickness)
     advice = "" if layered else " If the soft body is a thin layer on a stiff base, give its layer_thickness in [solid]."
     return (
         f"The contact is wide: the {contact.WIDTH} is {slope:.2g} of the radius. The parabola on a half-space is accurate up "

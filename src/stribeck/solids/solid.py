@@ -41,8 +41,8 @@ class Lengths(NamedTuple):
         return Lengths(min(self.thickness, other.thickness), self.memories + other.memories)
 
 
-def lengths_of(solid: Solid) -> Lengths:
-    """Return the lengths that a solid has beside the width of the contact: none where it does not tell any."""
+def lengths_of(solid: Solid | None) -> Lengths:
+    """Return the lengths that a solid has beside the width of the contact: none where it does not tell any, or is none."""
     return getattr(solid, "lengths", Lengths())
 
 
