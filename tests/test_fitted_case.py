@@ -56,6 +56,7 @@ CASES = {
         "viscosity",
     ),
     "one body": ({"modulus": None, "youngs_modulus": '"2 MPa"', "poisson_ratio": '"0.4 +- 10 %"'}, {}, "modulus"),
+    "two curved bodies": ({"radius": '"20 mm"', "radius_2": '"20 mm"'}, {}, "radius"),
     "two bodies": (
         {
             "modulus": None,

@@ -114,7 +114,7 @@ def _write(
             table, key = _place(name)
             raise InputError(
                 f"{path} cannot be written, as {case.path} does not have {key} on a line of its own in [{table}]; "
-                "write it there."
+                "write it there in the place of what it follows from."
             )
 
 
@@ -165,7 +165,7 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], comments: Comment
             continue
         place, key = _place(name)
         lines = [*comments(name), _entry_of(name, contact)]
-        instead: list[str] = [] if place != "contact" or key in given else _others(name, given, contact.INPUTS)
+        instead = _keys_of(name, given, contact.INPUTS) if place == "contact" else []
         if instead == ["youngs_modulus", "poisson_ratio"]:
             youngs = contact.modulus * (1 - _number(given["poisson_ratio"]) ** 2)
             edits.put(place, "youngs_modulus", [*lines[:-1], _entry("youngs_modulus", youngs, "pressure")])
@@ -209,9 +209,9 @@ def _found_from_anywhere(line: str, folder: Path) -> str:
     return line if named is None else f"{named[1]}{json.dumps(str((folder / named[3]).resolve()))}{named[4]}"
 
 
-def _others(name: str, given: Mapping[str, Any], table: InputTable) -> list[str]:
-    """Return the keys of a table that stand for an input, as those of a data sheet."""
-    return [key for key in given if table.stands_for.get(key) == name]
+def _keys_of(name: str, given: Mapping[str, Any], table: InputTable) -> list[str]:
+    """Return the keys of a table that make an input: its own, those of a data sheet, and those that join it."""
+    return [key for key in given if table.stands_for.get(key, key) == name]
 
 
 def _number(value: Any) -> float:
