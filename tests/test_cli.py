@@ -27,6 +27,7 @@ from command_line import (
     case_text,
     environment,
 )
+from matplotlib.figure import Figure
 
 import stribeck as sb
 from stribeck import Outcome
@@ -530,6 +531,21 @@ def test_ctrl_c_before_the_first_point_writes_nothing(capsys, tmp_path, monkeypa
     assert answer.err == "stribeck: Interrupted; nothing was written.\n"
     assert answer.out == ""
     assert os.listdir(tmp_path) == []
+
+
+def test_ctrl_c_while_the_first_of_two_files_is_written_leaves_no_half_of_the_results(
+    capsys, tmp_path, monkeypatch, interrupts
+):
+    interrupts(signal.default_int_handler)
+    save, picture, table = Figure.savefig, tmp_path / "surface.png", tmp_path / "surface.toml"
+
+    def interrupted(figure, *args, **kwargs):
+        save(figure, *args, **kwargs)
+        signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(Figure, "savefig", interrupted)
+    answer = call(capsys, "surface", EXAMPLES / "cylinder_profile.csv", "--plot", picture, "--out", table)
+    assert answer.code == 0 and f"Written: {picture}" in answer.out and picture.exists() and table.exists()
 
 
 def test_the_handler_of_ctrl_c_is_put_back_and_a_shell_that_ignores_it_respected(capsys, interrupts):

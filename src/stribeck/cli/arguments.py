@@ -13,6 +13,7 @@ from cyclopts import Parameter
 
 import stribeck as sb
 from stribeck.cli.exits import EXIT_BAD_INPUT, answer, complain
+from stribeck.cli.progress import interruptible
 from stribeck.files.writing import check_writable, need_extra
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError, checked_word, read_number, show, to_si
@@ -156,13 +157,14 @@ class Outputs:
         if self.plot is not None:
             actions[self.plot] = partial(found.plot, self.plot, force=self.force, **titled, **noted, **drawing)
         written, problems = [], []
-        for path, action in (actions | dict(others or {})).items():
-            try:
-                action()
-            except InputError as problem:
-                problems.append(str(problem))
-            else:
-                written.append(str(path))
+        with interruptible(writes=True):  # or one file would be there without the next, and "nothing was written" be said
+            for path, action in (actions | dict(others or {})).items():
+                try:
+                    action()
+                except InputError as problem:
+                    problems.append(str(problem))
+                else:
+                    written.append(str(path))
         return written, problems
 
     def finish(

@@ -9,7 +9,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from datetime import timedelta
 from types import FrameType
 from typing import Any
@@ -27,9 +27,9 @@ class Progress:
     # Ctrl-C ends work of one process at once, and a second one changes nothing, as it might come between solving and writing;
     # work of several processes ends after the present point, and at once with the second.  Nothing stops the writing.
 
-    def __init__(self, after_point: bool = False) -> None:
-        self.after_point = after_point
-        self.started = self.wanted = self.writes = self.timed_out = False
+    def __init__(self, after_point: bool = False, writes: bool = False) -> None:
+        self.after_point, self.writes = after_point, writes
+        self.started = self.wanted = self.timed_out = False
         self.bar: Any = None
         self.task: Any = None
         self.began = self.said = time.monotonic()
@@ -66,9 +66,11 @@ class Progress:
 
 
 @contextmanager
-def interruptible(after_point: bool = False, sigterm: bool = False, time_limit: float | None = None) -> Iterator[Progress]:
-    """Show progress and let Ctrl-C and a limit of time [s] stop the work, and SIGTERM too where that is wanted."""
-    progress = Progress(after_point)
+def interruptible(
+    after_point: bool = False, sigterm: bool = False, time_limit: float | None = None, writes: bool = False
+) -> Iterator[Progress]:
+    """Show progress and let Ctrl-C and a limit of time [s] stop the work, and SIGTERM too where that is wanted; no writing."""
+    progress = Progress(after_point, writes)
     main = threading.current_thread() is threading.main_thread()
     # A shell makes background jobs ignore Ctrl-C; that stays so.
     before_int = signal.getsignal(signal.SIGINT)
@@ -81,7 +83,7 @@ def interruptible(after_point: bool = False, sigterm: bool = False, time_limit: 
     try:
         if time_limit is not None:
             timer.start()
-        with _bar(progress):
+        with nullcontext() if writes else _bar(progress):
             yield progress
     except (sb.SolveError, KeyboardInterrupt) as problem:
         if progress.timed_out:
