@@ -173,6 +173,12 @@ def test_a_temperature_gives_the_viscosity_of_an_oil(tmp_path):
     found = sb.bench.read(EXAMPLE, fluid="iso-vg grade=46")
     oil = [sb.fluids.iso_vg(46, temperature=each).viscosity for each in found.temperature]
     assert found.viscosity == pytest.approx(oil) and np.ptp(found.temperature) > 1
+    for text, make in (
+        ("iso-vg grade=46 viscosity_index=120", lambda T: sb.fluids.iso_vg(46, T, 120)),
+        ("glycerol-water weight_fraction=0.8", lambda T: sb.fluids.glycerol_water(0.8, T)),
+    ):
+        of_text = sb.bench.read(EXAMPLE, fluid=text)
+        assert of_text.viscosity == pytest.approx([make(each).viscosity for each in of_text.temperature])
     found.to_csv(tmp_path / "warm.csv")
     data = sb.read_measurements(tmp_path / "warm.csv")
     assert data.abscissa == "speed_viscosity" and data.values == pytest.approx(found.speed * found.viscosity)

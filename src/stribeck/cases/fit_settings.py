@@ -436,7 +436,7 @@ def _liquid(fluid: Any) -> dict[str, Any]:
         word, *rest = fluid.split()
         if not all("=" in each for each in rest):
             raise InputError(f"fluid = {show(fluid)}; write a liquid and its conditions, as 'iso-vg grade=46'.")
-        given: dict[str, Any] = {"preset": word, **dict(each.split("=", 1) for each in rest)}
+        given: dict[str, Any] = {"preset": word, **{key: _bare(text) for key, text in (each.split("=", 1) for each in rest)}}
     else:
         given = dict(checked_kind("fluid", fluid, Mapping, "text as 'iso-vg grade=46', or a mapping"))
     preset = PRESETS[checked_word("fluid", given.get("preset", ""), tuple(PRESETS))]
@@ -446,3 +446,11 @@ def _liquid(fluid: Any) -> dict[str, Any]:
         )
     preset(**{key: value for key, value in given.items() if key != "preset"})  # refuses what it does not know
     return given
+
+
+def _bare(text: str) -> float | str:
+    """Return text without a unit as the number that it is."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
