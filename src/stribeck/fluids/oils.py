@@ -4,7 +4,8 @@ r"""Oils as data sheets name them: ISO VG grade and viscosity index, or two visc
 
     \lg \lg (\nu + 0.7) = A - B \lg T
 
-with :math:`\nu` in cSt and T in K, through the viscosities at 40 and 100 degrees Celsius (ASTM D341).  A viscosity index V
+with :math:`\nu` in cSt and T in K, through the viscosities at 40 and 100 degrees Celsius (ASTM D341, whose further terms
+change viscosities above 2 cSt by up to 0.5 %, and lower ones by up to 2 %).  A viscosity index V
 gives the one at 100 degrees from that at 40 (ASTM D2270):
 
 .. math::
