@@ -239,5 +239,5 @@ class LineSource(Source):
         state = self._states[s, rtol].state
         assert state is not None
         rubbing = self.sliding * friction.factor(None)
-        slopes, _ = derivatives_along(state, self.coordinate.direction)
+        slopes, _ = derivatives_along(state, self.coordinate.groups_at, s)
         return float(rubbing * slopes[ROW[friction.observable]] + beta * slopes[ROW[f"viscous_{definition}"]])

@@ -8,17 +8,18 @@ for each group G, with the factors of Newton's Jacobian made anew at the state. 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.groups import Model
+from stribeck.contacts.groups import Groups, Model
 from stribeck.equations.observables import ROW, area_derivatives, changes, measured
 from stribeck.equations.operators import Operators
 from stribeck.equations.state import State
+from stribeck.numerics.settings import EPSILON
 from stribeck.numerics.trace import Trace
 from stribeck.quantities.outputs import ALL_NAMES, AREA
 
@@ -39,9 +40,15 @@ def log_derivatives(state: State, beside: Sequence[Change] = ()) -> dict[str, Ar
     return dict(zip((*ALL_NAMES, AREA), (*found.T, area_derivatives(state, moves)), strict=True))
 
 
-def derivatives_along(state: State, direction: Array, change: Change | None = None) -> tuple[Array, Array]:
-    """Return the derivatives of all observables, and of the unknowns, along a path: of ln(groups), and by its model."""
-    found, forces = _partials(state, direction[None], [] if change is None or change[0] == change[1] else [change])
+def derivatives_along(state: State, groups_at: Callable[[float], Groups], s: float) -> tuple[Array, Array]:
+    """Return the derivatives of all observables, and of the unknowns, along a path of groups, with its model."""
+    step = EPSILON ** (1 / 3)  # where truncation and rounding of a central difference are alike
+    below, above = groups_at(s - step), groups_at(s + step)
+    ends = np.array([[float(getattr(groups, name)) for name in GROUPS] for groups in (below, above)])
+    direction = np.zeros(len(GROUPS))
+    direction[(ends > 0).all(axis=0)] = np.diff(np.log(ends[:, (ends > 0).all(axis=0)]), axis=0)[0] / (2 * step)
+    beside = [] if below.model == above.model else [(below.model, above.model, 2 * step)]
+    found, forces = _partials(state, direction[None], beside)
     move = _moves(state, forces.sum(axis=0))
     return found.sum(axis=0) + _changes(state, move), move
 

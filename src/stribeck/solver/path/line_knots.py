@@ -20,7 +20,7 @@ from stribeck.numerics.settings import EPSILON, FLOOR, LOG_STEP, NEGLIGIBLE, SHA
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, GROUPS
+from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.path.hermite_path import HermitePath, Knot
 from stribeck.solver.refinement import RefinedState
@@ -123,11 +123,7 @@ class LineKnots(LineStates):
     def _slopes(self, s: float, state: State) -> Array:
         """Return the slopes of the observables of a state by its equations."""
         step = EPSILON ** (1 / 3)  # where truncation and rounding of a central difference are alike
-        below, above = self.groups_at(s - step), self.groups_at(s + step)
-        ends = np.array([[float(getattr(groups, name)) for name in GROUPS] for groups in (below, above)])
-        direction = np.zeros(len(GROUPS))
-        direction[(ends > 0).all(axis=0)] = np.diff(np.log(ends[:, (ends > 0).all(axis=0)]), axis=0)[0] / (2 * step)
-        slopes, move = derivatives_along(state, direction, (below.model, above.model, 2 * step))
+        slopes, move = derivatives_along(state, self.groups_at, s)
         before, after = (minimum_of(state.equations, state.y + each * move)[0] for each in (-step, step))
         return np.append(slopes, (after - before) / (2 * step))
 
