@@ -40,6 +40,8 @@ STATE_RTOL = {"line": 1e-5, "point": 1e-4}  # By geometry: a ball takes a tenth 
 
 CURVE_POINTS = 21  # Points of the curve on which transitions lie
 
+NEARLY_LINEAR = math.log(2.0)  # Change of the logarithm of a speed up to which it is as large to the other side
+
 INTERVAL_95 = 1.96  # Half-width of the 95 % interval of a normal distribution, in standard deviations
 
 
@@ -252,16 +254,21 @@ def _transitions(contact: Contact, sigmas: Mapping[str, float], definition: Defi
 
     start, searched = marks(contact)
     falls, rises = dict.fromkeys(start, 0.0), dict.fromkeys(start, 0.0)  # Variances of the logarithm to either side
+
+    def changes(name: str, step: float) -> list[float]:
+        """Return the changes of the logarithms, nan where a mark is lost."""
+        factor, tied = math.exp(step), inputs_tied_to(contact, name, sigmas)
+        moved, _ = marks(contact.replace(**{each: getattr(contact, each) * factor for each in tied}))
+        return [math.log(moved[mark] / value) if mark in moved else math.nan for mark, value in start.items()]
+
     for name, sigma in sigmas.items():
         if name == "speed":
             continue
-        tied = inputs_tied_to(contact, name, sigmas)
-        for factor in (math.exp(-sigma), math.exp(sigma)):
-            moved, _ = marks(contact.replace(**{each: getattr(contact, each) * factor for each in tied}))
-            for mark, value in start.items():
-                change = math.log(moved[mark] / value) if mark in moved else math.nan
-                falls[mark] += change**2 if change < 0 else 0.0 if change >= 0 else math.inf
-                rises[mark] += change**2 if change > 0 else 0.0
+        more = changes(name, sigma)
+        less = [-each for each in more] if all(abs(each) < NEARLY_LINEAR for each in more) else changes(name, -sigma)
+        for mark, change in zip((*start, *start), (*more, *less), strict=True):
+            falls[mark] += change**2 if change < 0 else 0.0 if change >= 0 else math.inf
+            rises[mark] += change**2 if change > 0 else 0.0
     found = []
     for mark, value in start.items():
         below, above = math.sqrt(falls[mark]), math.sqrt(rises[mark])
