@@ -189,7 +189,10 @@ def table_for(groups: Groups) -> TableRow:
             f"the atlas covers the contact law {groups.law.name} of one shape of the spectrum, self-affine with a Hurst "
             "exponent of 0.8 over two decades, and this law is of another; use the solver."
         )
-    raise InputError(f"the atlas covers states of the {laws} contact law, not of {groups.law.name}; use the solver.")
+    raise InputError(
+        f"of this model (cavitation = {groups.model.cavitation.value!r}) the atlas covers states of the {laws} contact law, "
+        f"not of {groups.law.name}; use the solver."
+    )
 
 
 def covers(groups: Groups) -> Flags:
