@@ -41,6 +41,7 @@ from stribeck.explorer.uploads import (
     read_file,
     read_measured,
     read_scan,
+    reading_for_fit,
     shown_name,
     with_scan,
 )
@@ -715,6 +716,15 @@ def test_a_fit_on_the_page_takes_the_table_fit_of_its_case_as_the_command_does(t
         "roughness (a)",
         "roughness (b)",
     ]
+
+
+def test_a_number_of_a_fluid_that_the_page_does_not_fit_is_named():
+    fluid = {"model": "carreau", "relaxation_time": "1 ms", "exponent": 0.7}
+    now = inputs.Inputs.of(START.tables | {"fluid": fluid, "fit": {"free": ["boundary_friction", "relaxation_time"]}})
+    rows = b"speed [mm/s],friction\n0.1,0.65\n3,0.45\n10,0.28\n30,0.12\n100,0.08\n"
+    [measured] = read_measured("m.csv", rows, now.contact)
+    assert "does not fit relaxation_time, free in [fit]; stribeck fit does." in reading_for_fit(now, measured)
+    assert "does not fit" not in reading_for_fit(START, measured)
 
 
 def test_a_fitted_roughness_scales_a_surface_on_the_page_as_by_the_command(tmp_path):

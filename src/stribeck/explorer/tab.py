@@ -27,9 +27,18 @@ from stribeck.explorer.inputs import choices, inputs, url
 from stribeck.explorer.inputs.inputs import History, Inputs
 from stribeck.explorer.page import UPDATING_TEXT, Page, Problems, form_of, parts_of
 from stribeck.explorer.table import without_rtol
-from stribeck.explorer.uploads import MEANINGS, SCAN_ENDINGS, Measured, Scan, fit_measured, free_inputs, read_file, with_scan
+from stribeck.explorer.uploads import (
+    MEANINGS,
+    SCAN_ENDINGS,
+    Measured,
+    Scan,
+    fit_measured,
+    free_inputs,
+    read_file,
+    reading_for_fit,
+    with_scan,
+)
 from stribeck.files.writing import MissingExtraError
-from stribeck.fits.measurements import CHANGE_READ
 from stribeck.numerics.newton import ended_by
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve_error import SolveError
@@ -257,7 +266,7 @@ class Tab:
     def show_fit(self) -> None:
         """Show what may be fitted to the measured curves of the last file."""
         last = self.measured[-1]
-        taken = last.source.taken.replace(CHANGE_READ, ".")
+        taken = reading_for_fit(self.inputs, last)
         self.page.show(fitting={"file": last.file, "inputs": free_inputs(self.inputs), "taken": taken})
 
     async def fit(self, *free: str) -> None:

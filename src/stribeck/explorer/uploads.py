@@ -28,11 +28,11 @@ from stribeck.files.table_reading import read_table
 from stribeck.files.toml import parse_toml
 from stribeck.fits.columns import known_name
 from stribeck.fits.fit import fit
-from stribeck.fits.measurements import Measurements, read_measurements
+from stribeck.fits.measurements import CHANGE_READ, Measurements, read_measurements
 from stribeck.fits.result import Fit
 from stribeck.fits.values import ABSCISSAS
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, listed
 from stribeck.surfaces.analysis import analyse
 from stribeck.surfaces.files import read_topography
 from stribeck.surfaces.several_scans import surface_table
@@ -88,6 +88,13 @@ def free_inputs(now: Inputs) -> list[tuple[str, str, bool]]:
     """Return the inputs that a fit may free, with their labels, and whether ``[fit]`` or the default frees them."""
     chosen = now.tables.get("fit", {}).get("free", DEFAULT_FREE)
     return [(name, now.fields[name].label, name in chosen) for name in FREE_INPUTS if name in now.fields]
+
+
+def reading_for_fit(now: Inputs, measured: Measured) -> str:
+    """Return how a file was read, and what of ``[fit]`` the page does not fit, in sentences."""
+    left = [name for name in now.case.fit.free if name not in now.fields]
+    by_command = f" The page does not fit {listed(left)}, free in [fit]; stribeck fit does." if left else ""
+    return measured.source.taken.replace(CHANGE_READ, ".") + by_command
 
 
 def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object], free: Sequence[str] = ()) -> Fitted:
