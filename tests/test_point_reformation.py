@@ -66,7 +66,8 @@ def test_along_a_curve_the_film_breaks_where_its_suction_does():
 def test_towards_ambient_pressure_the_film_is_that_of_a_free_exit():
     free = sb.solve(Groups(0.1, 1e-3, 1e-3, geometry="point"), cavitation="exit", rtol=1e-3).state
     same = ball(0.1, 0.1, 0.0, 1e-3)
-    assert same.values["contact_load_share"] == pytest.approx(free.values["contact_load_share"], abs=1e-9)
+    iteration = 1e-4 * free.absolute_errors["contact_load_share"]  # Each iteration ends at a part of the tolerance
+    assert same.values["contact_load_share"] == pytest.approx(free.values["contact_load_share"], abs=iteration)
     off = [
         ball(0.1, 0.1, cavity, 1e-3).values["contact_load_share"] - free.values["contact_load_share"]
         for cavity in (-1e-2, -1e-3)
