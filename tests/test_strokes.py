@@ -169,7 +169,7 @@ def test_a_speed_that_rises_and_falls_has_the_friction_of_an_independent_scheme(
 def test_a_film_that_thins_and_ends_turns_with_the_motion():
     """The way back is the mirror image of the way out; that of a Newtonian film is so below."""
     contact = CONTACT.replace(cavitation="exit", fluid=sb.fluids.Carreau("1 ms", 0.8))
-    found = sb.stroke(contact, sine(8), steps=40, cycles=2)
+    found = sb.stroke(contact, sine(8), steps=32, cycles=2)
     for name in ("contact_load_share", "friction_fluid", "minimum_film_thickness"):
         out, back = np.abs(getattr(found, name)[16:33]), np.abs(getattr(found, name)[32:49])
         assert np.allclose(out, back, atol=0.01 * back.max()), name
