@@ -120,6 +120,17 @@ def test_killing_the_run_keeps_the_states_and_another_goes_on_without_the_cluste
     assert {state: after[state] for state in before} == before
 
 
+def test_a_cluster_keeps_the_states_that_one_process_finds(tmp_path):
+    from distributed import LocalCluster
+
+    file = write(tmp_path, RANDOM.format(kind="sobol", points=4))
+    with LocalCluster(n_workers=1, threads_per_worker=1, processes=False, protocol="tcp://", dashboard_address=None) as made:
+        found = sb.sweep(file, tmp_path / "there", scheduler=made.scheduler_address)
+    here = sb.sweep(file, tmp_path / "here")
+    assert (found.computed, found.outcomes) == (4, here.outcomes)
+    assert found.to_dataset().equals(here.to_dataset())
+
+
 def test_where_no_scheduler_answers_is_a_sentence(capsys, tmp_path, monkeypatch):
     monkeypatch.setattr("stribeck.batches.executors.CONNECTION_TIMEOUT", 0.5)
     file = write(tmp_path, RANDOM.format(kind="sobol", points=4))

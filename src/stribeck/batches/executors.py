@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import pickle
 import queue
 import secrets
 import signal
@@ -210,7 +211,7 @@ def _gather(client: Any, chains: Sequence[Chain], keep: Keep, pause: Pause) -> N
         keep([row for row in rows if row[0] not in kept])
         kept.update(number for number, _ in rows)
 
-    client.subscribe_topic(topic, lambda event: arrived.put([event[1]]))
+    client.subscribe_topic(topic, lambda event: arrived.put([pickle.loads(event[1])]))
     waiting = set(client.map(partial(_solve_there, topic=topic), list(chains), pure=False, key=topic))
     for future in waiting:
         future.add_done_callback(arrived.put)
@@ -257,7 +258,7 @@ def _solve_there(chain: Chain, topic: str) -> tuple[str, list[Row]]:
 
     def kept(number: int, row: Any) -> None:
         rows.append((number, row))
-        worker.log_event(topic, rows[-1])
+        worker.log_event(topic, pickle.dumps(rows[-1]))  # Dask makes plain tuples of named ones
 
     chain.solve(kept)
     return version("stribeck"), rows
