@@ -108,11 +108,11 @@ def test_killing_the_run_keeps_the_states_and_another_goes_on_without_the_cluste
         try:
             until(lambda: len(kept(store)) >= len(before) + 10)
             process.send_signal(signal.SIGINT)
-            _, err = finish(process, 60)
+            out, err = finish(process, 60)
         finally:
             process.kill()
     assert process.returncode == 130, err
-    assert "was taken over" in err and "run the same command again to resume" in err
+    assert "was taken over" in out and "run the same command again to resume" in err
     found = sb.open_sweep(store).finished
     last = sb.sweep(file, store)
     assert (last.finished, last.computed) == (256, 256 - found)
