@@ -436,7 +436,10 @@ def _liquid(fluid: Any) -> dict[str, Any]:
         word, *rest = fluid.split()
         if not all("=" in each for each in rest):
             raise InputError(f"fluid = {show(fluid)}; write a liquid and its conditions, as 'iso-vg grade=46'.")
-        given: dict[str, Any] = {"preset": word, **{key: _bare(text) for key, text in (each.split("=", 1) for each in rest)}}
+        given: dict[str, Any] = {
+            "preset": word,
+            **{key: _number_or_text(text) for key, text in (each.split("=", 1) for each in rest)},
+        }
     else:
         given = dict(checked_kind("fluid", fluid, Mapping, "text as 'iso-vg grade=46', or a mapping"))
     preset = PRESETS[checked_word("fluid", given.get("preset", ""), tuple(PRESETS))]
@@ -448,7 +451,7 @@ def _liquid(fluid: Any) -> dict[str, Any]:
     return given
 
 
-def _bare(text: str) -> float | str:
+def _number_or_text(text: str) -> float | str:
     """Return text without a unit as the number that it is."""
     try:
         return float(text)

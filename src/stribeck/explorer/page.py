@@ -23,7 +23,13 @@ FRAME_TIMEOUT = 2.0  # Time after which a browser that does not answer gets the 
 
 FILE_ENDINGS = (".toml", ".csv", ".txt", ".tsv", ".dat", ".xlsx", *SCAN_ENDINGS)
 
-CLOSED_THERE = ("complaint", "code", "mapping", "fitting", "fitted")  # Parts that the browser closes without a word to Python
+PARTS_OF_BROWSER = (
+    "complaint",
+    "code",
+    "mapping",
+    "fitting",
+    "fitted",
+)  # Parts that the browser closes without a word to Python
 
 Problems = dict[str, dict[str, str]]  # What is wrong with fields and lists: text, sentence, and the key of a list
 
@@ -41,7 +47,7 @@ class Page(ui.element, component="page.js"):
     def show(self, **parts: Any) -> Any:
         """Send what changed; awaited, it returns when the browser has drawn it, or does not answer."""
         charts = parts.pop("charts", {})
-        changed = {name: part for name, part in parts.items() if name in CLOSED_THERE or self.shown.get(name) != part}
+        changed = {name: part for name, part in parts.items() if name in PARTS_OF_BROWSER or self.shown.get(name) != part}
         drawn = {name: chart for name, chart in charts.items() if self.shown.get(f"chart {name}") != chart}
         self.shown |= changed | {f"chart {name}": chart for name, chart in drawn.items()}
         return self.run_method("show", changed | {"charts": drawn}, timeout=FRAME_TIMEOUT)

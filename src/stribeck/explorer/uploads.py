@@ -120,10 +120,10 @@ def lent_file(name: str, content: bytes) -> Iterator[Path]:
         try:
             yield path
         except InputError as problem:
-            raise InputError(_renamed(str(problem), path, name)) from None
+            raise InputError(_with_own_name(str(problem), path, name)) from None
 
 
-def _renamed(text: str, path: Path, name: str) -> str:
+def _with_own_name(text: str, path: Path, name: str) -> str:
     """Return sentences with the name that a file came with in the place of its path, or of its own name alone."""
     return re.sub(rf"{re.escape(str(path))}|\b{re.escape(path.name)}", lambda _: name, text)
 
@@ -199,7 +199,7 @@ def read_scan(name: str, content: bytes) -> Scan:
     except InputError as problem:  # without advice on options of the command, which the page does not have
         raise InputError(re.sub(r"add --[^;]*?, or write it", "write it", str(problem))) from None
     alpha, beta = surface.limits
-    notes = "".join(f" {_renamed(note, path, shown)}" for note in surface.notes)
+    notes = "".join(f" {_with_own_name(note, path, shown)}" for note in surface.notes)
     height = format_si(surface.roughness.h_rms, "length")
     limit = f"alpha {alpha.value:.3g} ({alpha.interval}), beta {beta.value:.3g} ({beta.interval}), at 95 %"
     report = f"Surface of {shown}: rms height {height}, {limit}.{notes}"

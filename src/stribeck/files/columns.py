@@ -36,7 +36,7 @@ IN_WORDS = {"time": "seconds", "length": "metres"}  # SI units of columns that m
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
 
 _MASS = re.compile(r"(?:[mk]?g|gram|gr|lb)f?")
-_TURNS_PER_SECOND = re.compile(r"(?:rps|rev/s|U/s|1/s|Hz|s\^?[-−]1|s⁻¹)")
+_TURNS_PER_SECOND = re.compile(r"(?:U/s|1/s|Hz|s\^?[-−]1|s⁻¹)")
 
 _STATED = re.compile(
     r"\W*(?P<name>[^:;,=\t\[(]*?)\s*(?:[\[(](?P<before>[^\])]*)[\])])?\s*[:;,=\t][\s:;,=]*"

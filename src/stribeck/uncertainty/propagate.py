@@ -40,7 +40,7 @@ STATE_RTOL = {"line": 1e-5, "point": 1e-4}  # By geometry: a ball takes a tenth 
 
 CURVE_POINTS = 21  # Points of the curve on which transitions lie
 
-NEARLY_LINEAR = math.log(2.0)  # Change of the logarithm of a speed up to which it is as large to the other side
+LINEAR_CHANGE = math.log(2.0)  # Change of the logarithm of a speed up to which it is as large to the other side
 
 INTERVAL_95 = 1.96  # Half-width of the 95 % interval of a normal distribution, in standard deviations
 
@@ -265,7 +265,7 @@ def _transitions(contact: Contact, sigmas: Mapping[str, float], definition: Defi
         if name == "speed":
             continue
         more = changes(name, sigma)
-        less = [-each for each in more] if all(abs(each) < NEARLY_LINEAR for each in more) else changes(name, -sigma)
+        less = [-each for each in more] if all(abs(each) < LINEAR_CHANGE for each in more) else changes(name, -sigma)
         for mark, change in zip((*start, *start), (*more, *less), strict=True):
             falls[mark] += change**2 if change < 0 else 0.0 if change >= 0 else math.inf
             rises[mark] += change**2 if change > 0 else 0.0

@@ -22,7 +22,7 @@ MIN_OBSERVABLE = 1e-6
 
 MIN_PROBABILITY = 1e-3  # Probability below which only a few of the 20 000 samples are left
 
-MOST_NAMED = 3  # Inputs that the sentence of the regimes names; `sources` names all
+MAX_INPUTS = 3  # Inputs that the sentence of the regimes names; `sources` names all
 
 MIN_NAMED_SHARE = 1e-3  # Smallest share of the variance that is named
 
@@ -104,7 +104,7 @@ class Uncertainty(Exported, Told):
     def probability_sentence(self) -> str:
         """The same as a sentence, with the inputs whose errors it counts, of many how many."""
         labels = [self.contact.INPUTS.rows[name].label for name in self.errors]
-        inputs = listed(labels) if len(labels) <= MOST_NAMED else f"{len(labels)} inputs"
+        inputs = listed(labels) if len(labels) <= MAX_INPUTS else f"{len(labels)} inputs"
         counted = f" by the errors of {inputs}" if labels else ""
         return f"Probability of each regime{counted}: {self.probabilities}."
 
