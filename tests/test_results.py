@@ -269,6 +269,10 @@ def test_results_write_a_table_with_a_row_for_each_state(state, tmp_path):
     batch.to_csv(tmp_path / "batch.csv")
     names, rows = table(tmp_path / "batch.csv")
     assert names[:2] == list(batch.dims) and len(rows) == 4
+    sb.solve_batch(sb.Groups(1e-5, 0.1, 1e-4), speed=[1e-5, 2e-5], load=[0.1, 0.2]).to_csv(tmp_path / "row.csv")
+    names, rows = table(tmp_path / "row.csv")
+    inputs = [[float(row[names.index(name)]) for name in ("speed", "load")] for row in rows]
+    assert inputs == [[1e-5, 0.1], [2e-5, 0.2]]
 
 
 def test_a_fit_shows_itself_and_is_a_dataset():

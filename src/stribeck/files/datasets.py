@@ -170,7 +170,8 @@ def _table(dataset: xarray.Dataset) -> dict[str, Any]:
     dims = _dims_of_table(dataset)
     empty = import_xarray("a table").DataArray(np.empty([dataset.sizes[dim] for dim in dims]), dims=dims)
     above = _above_table(dataset)
-    names = [*(str(dim) for dim in dims), *(str(name) for name in dataset.data_vars if name not in above)]
+    # With coordinates that are no dimension: the inputs of states in a row.
+    names = dict.fromkeys(str(name) for name in [*dims, *dataset.coords, *dataset.data_vars] if name not in above)
     return {name: dataset[name].broadcast_like(empty).transpose(*dims).values.ravel() for name in names}
 
 
@@ -184,7 +185,7 @@ def _above_table(dataset: xarray.Dataset) -> dict[Hashable, Any]:
     """Return the variables that are no columns of the table, as they are the same in all rows or along something else."""
     dims = set(_dims_of_table(dataset))
     others = {name: each for name, each in dataset.variables.items() if not set(each.dims) <= dims}
-    return others | ({name: each for name, each in dataset.data_vars.items() if not each.dims} if dims else {})
+    return others | ({name: each for name, each in dataset.variables.items() if not each.dims} if dims else {})
 
 
 def _about(dataset: xarray.Dataset) -> dict[str, str]:
