@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from importlib.metadata import version
 
 import numpy as np
@@ -517,15 +518,18 @@ def test_a_limit_of_time_keeps_the_finished_points_also_in_a_background_job_that
         assert refused.code == 2 and "--time-limit" in refused.err
 
 
-def test_ctrl_c_before_the_first_point_writes_nothing(capsys, tmp_path, monkeypatch, interrupts):
+@pytest.mark.parametrize(("name", "ignored"), [("stribeck_curve", ()), ("load_case", KeyboardInterrupt)])
+def test_ctrl_c_before_the_first_point_writes_nothing(name, ignored, capsys, tmp_path, monkeypatch, interrupts):
+    """Python ignores it in a callback of a weak reference, as of the locks of modules."""
     interrupts(signal.default_int_handler)
-    whole = sb.stribeck_curve
+    whole = getattr(sb, name)
 
     def pressed(*arguments, **options):
-        signal.raise_signal(signal.SIGINT)
+        with suppress(ignored):
+            signal.raise_signal(signal.SIGINT)
         return whole(*arguments, **options)
 
-    monkeypatch.setattr(sb, "stribeck_curve", pressed)
+    monkeypatch.setattr(sb, name, pressed)
     answer = call(capsys, "curve", PDMS, "-o", tmp_path / "curve.nc")
     assert answer.code == 130
     assert answer.err == "stribeck: Interrupted; nothing was written.\n"

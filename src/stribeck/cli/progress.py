@@ -74,6 +74,8 @@ def interruptible(
     main = threading.current_thread() is threading.main_thread()
     # A shell makes background jobs ignore Ctrl-C; that stays so.
     before_int = signal.getsignal(signal.SIGINT)
+    if isinstance(before_int, Interrupted) and before_int.pressed:
+        raise KeyboardInterrupt  # which was lost where Python ignores exceptions, as while libraries are loaded
     handles = main and (before_int is signal.default_int_handler or isinstance(before_int, Interrupted))
     if handles:
         signal.signal(signal.SIGINT, progress.interrupt)
