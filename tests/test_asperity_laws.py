@@ -56,9 +56,10 @@ def test_far_apart_a_moment_falls_as_a_gaussian_over_a_power():
 
 
 def test_deep_below_the_mean_plane_a_moment_goes_on_straight_and_falls():
-    s = np.array([-14.0, -13.0, -12.0 - 1e-9, -12.0 + 1e-9])
+    s = np.array([-14.0, -13.0, -12.0 - 1e-9, -12.0 + 1e-9, -12.0, 1e4, 1e4 * (1 + 1e-9)])
     values, slopes = with_slope(LAWS[2.5].log_pressure, s)
     assert slopes[0] == slopes[1] == pytest.approx(slopes[3], rel=1e-8)
+    assert slopes[4] == pytest.approx(slopes[3], rel=1e-8) and slopes[5] == pytest.approx(slopes[6], rel=1e-6)
     assert slopes[0] < 0
     assert values[0] - values[1] == pytest.approx(-slopes[0], rel=1e-9)
     assert values[2] == pytest.approx(values[3], abs=1e-8)

@@ -65,10 +65,12 @@ def log_moment(order: float, separation: Any) -> Any:
     inside = np.maximum(separation, MIN_KNOT)
     low, high = _ends()
     t = np.arcsinh(inside)
-    found = pointwise(lambda t: (np.asarray(spline(t)), slope(t)), np.minimum(t, high))
-    found = found - 0.5 * inside * inside - (order + 1) * np.maximum(t - high, 0.0)
+    known = np.minimum(t, high)
+    found = pointwise(lambda t: (np.asarray(spline(t)), slope(t)), known)
+    # Differences from what was cut off: at the ends themselves only one of both parts has a slope.
+    found = found - 0.5 * inside * inside - (order + 1) * (t - known)
     tangent = float(slope(low)) / math.hypot(1.0, MIN_KNOT) - MIN_KNOT
-    return found + tangent * np.minimum(separation - MIN_KNOT, 0.0)
+    return found + tangent * (separation - inside)
 
 
 @dataclass(frozen=True)
@@ -135,8 +137,9 @@ class GreenwoodWilliamson(_GaussianHeights):
     Notes
     -----
     With alpha = 1 the h_rms of the contact is the standard deviation :math:`\sigma` of the summit heights, and the gap is
-    measured from their mean plane.  The law is exact for its model at any separation, also below zero, where the model itself
-    (asperities that know nothing of each other) no longer holds; notes of a solution say so.
+    measured from their mean plane.  The law is exact for its model from -12 on, also below zero, where the model
+    itself (asperities that know nothing of each other) no longer holds; notes of a solution say so.  Below -12, where the
+    pressure is above 40 beta E*, it goes on by its tangent.
 
     Source: [GW]; docs/contact_laws.md.
     """
