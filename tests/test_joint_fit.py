@@ -93,13 +93,15 @@ def test_names_of_files_and_the_case_say_what_differs_and_the_case_counts_most(t
     assert read({})["a_30_25C"] == {"viscosity": 7e-3}  # as its first line says
 
 
-def test_a_line_counts_only_with_a_unit_and_where_no_column_and_no_other_line_disagrees(tmp_path):
+def test_a_line_counts_only_with_a_unit_and_no_other_line_may_disagree(tmp_path):
     write(tmp_path / "bare.csv", TRUE, 1, "Load: 5")
     write(tmp_path / "two.csv", TRUE, 2, "Load: 5 N/m\nLoad: 6 N/m")
+    with pytest.raises(sb.InputError, match="two.csv: rows 1 and 2 give two values of 'load'"):
+        inputs_of(tmp_path, {}, ["two.csv"])
     write(tmp_path / "force.csv", TRUE, 3, "Load: 5 N")  # of a cylinder it is per length
     write(tmp_path / "one.csv", TRUE, 4, "Load [N/m]: 5\nTemperature: 25 °C")
-    found = inputs_of(tmp_path, {}, ["bare.csv", "two.csv", "force.csv", "one.csv"])
-    assert found == {"bare": {}, "two": {}, "force": {}, "one": {"load": 5.0}}
+    found = inputs_of(tmp_path, {"files": {"two.csv": {"load": 7.0}}}, ["bare.csv", "two.csv", "force.csv", "one.csv"])
+    assert found == {"bare": {}, "two": {"load": 7.0}, "force": {}, "one": {"load": 5.0}}
 
 
 REFUSED = {

@@ -93,6 +93,11 @@ def test_the_temperature_of_the_rows_is_said():
     assert note.startswith("Temperature by 'Lube Temp (°C)': 25.1 °C; the viscosity of the case must be that")
 
 
+def test_the_temperature_is_that_of_the_liquid_and_not_of_its_bath(written):
+    text = table("speed [mm/s];COF;Pot Temp [°C];Lube Temp [°C]", speed, friction, lambda u, mu: 45, lambda u, mu: 40)
+    assert any(note.startswith("Temperature by 'Lube Temp [°C]': 40 °C") for note in read(written(text)).notes)
+
+
 def test_units_below_the_names_of_a_tabulated_law_count(written):
     rows = "\n".join(f"{s},{p}" for s, p in [(0.1, 9), (0.5, 6), (1, 4), (2, 2), (3, 1)])
     numbers = {"alpha": 2.0, "beta": 0.05, "roughness": 1e-6, "modulus": 2e6}
@@ -207,6 +212,9 @@ GERMAN = table("Geschwindigkeit [mm/s];Reibwert", speed, friction).replace(".", 
 
 VARIATIONS = {
     "trailing separators everywhere": PLAIN.replace("\n", ";;\n"),
+    "no cells for remarks": PLAIN.replace("COF", "COF;Comment"),
+    "a dash for no unit": PLAIN.replace("COF", "COF [–]"),
+    "no unit in words": PLAIN.replace("COF", "COF (dimensionless)"),
     "trailing separators in the rows": PLAIN.replace("\n", ";;\n").replace("COF;;", "COF"),
     "trailing separators above": "Recipe;Radius;;\na;b;1;2;3\n" + PLAIN.replace("\n", ";\n"),
     "a column without a name": table(";speed [mm/s];COF", lambda u, mu: 7, speed, friction),
@@ -325,6 +333,19 @@ def test_a_rotation_is_a_speed_by_the_radius_of_its_track(subtests, written):
             assert found.inputs == ({},)  # it is not the radius of the ball
 
 
+def test_an_angular_velocity_per_second_may_be_of_radians_or_turns(subtests, written):
+    for unit in ("1/s", "s^-1", "s⁻¹"):
+        with subtests.test(unit=unit):
+            path = written(table(f"Angular velocity [{unit}];COF", lambda u, mu: u / 20, friction))
+            assert "may be in radians or in turns per second" in refusal(path, track_radius="20 mm")
+            assert_on_curve(read(path, track_radius="20 mm", units={"rotation": "rad/s"}))
+            turns = written(table(f"Rotational speed [{unit}];COF", lambda u, mu: u / 20 / (2 * np.pi), friction))
+            assert_on_curve(read(turns, track_radius="20 mm"))
+    for unit, size in (("°/s", 180 / np.pi), ("tr/min", 30 / np.pi)):
+        path = written(table(f"Angular velocity [{unit}];COF", lambda u, mu, size=size: u / 20 * size, friction))
+        assert_on_curve(read(path, track_radius="20 mm"))
+
+
 def test_a_rotation_without_a_radius_is_refused_by_what_is_missing(written):
     path = written(table("Ball diameter: 12 mm\nSpeed [rpm];COF", speed, friction))
     assert "'Speed [rpm]' is a rotation" in refusal(path) and "track_radius = '20 mm' in [fit]" in refusal(path)
@@ -406,6 +427,82 @@ def test_a_code_of_missing_friction_leaves_its_row_out_and_is_counted(subtests, 
             assert "2 rows with '-9999' in 'COF', a missing value, left out: 10, 11." in found.notes
             speed = refusal(written(PLAIN + "-9999;0.1\n"), magnitudes=magnitudes)
             assert "has '-9999' in row 10, which programs write where a value is missing" in speed
+
+
+def test_a_code_in_the_place_of_a_force_is_no_force(subtests, written):
+    rows = table("speed [mm/s];Fx [N];Fz [N]", speed, lambda u, mu: 3 * mu, lambda u, mu: 3)
+    for code in ("9.9E+37", "-9999", "99999", "Overload", "OVRLD", "O.L", ">>>>", "n.d."):
+        with subtests.test(code=code):
+            found = read(written(f"{rows}400;0.1;{code}\n"))
+            assert found.friction == pytest.approx(curve(SPEEDS), rel=1e-6) and found.inputs == ({"load": 3.0},)
+            assert any("left out: 10" in note for note in found.notes)
+
+
+def test_few_rows_at_a_load_or_ratio_are_not_counted_as_another(subtests, written):
+    loads = (1, 2, 5, 10)
+    for name, header, wanted in (("load", "Load [N]", loads), ("slide_to_roll", "SRR [%]", [0.01 * each for each in loads])):
+        with subtests.test(name=name):
+            lines = [f"{load};{u};{curve(u):.6f}" for load in loads for u in (1, 100)]
+            found = read(written("\n".join([f"{header};sum of speeds [mm/s];COF", *lines])))
+            assert [each[name] for each in found.inputs] == pytest.approx(wanted)
+            assert np.bincount(found.curve).tolist() == [2, 2, 2, 2]
+    noisy = [f"{load * (1 + 0.003 * i):.4f};{u};{curve(u):.6f}" for load in (1, 4) for i, u in enumerate(SPEEDS)]
+    text = "\n".join(["Normal force [N];speed [mm/s];COF", *noisy, "2.0;3;0.5", "2.01;30;0.2"])
+    for geometry in ("line", "point"):
+        found = read(written(text), geometry)
+        assert len(found) == 16 and "without rows 18, 19, near none" in found.taken
+    series = sb.bench.read(written(text))
+    assert np.bincount(series.curve).tolist() == [8, 8]
+
+
+def test_a_row_without_the_name_of_its_curve_is_refused(written):
+    lines = [f"{'water' * (i == 0)}{'oil' * (i == 8)};{u};{curve(u):.6f}" for i, u in enumerate([*SPEEDS, *SPEEDS])]
+    path = written("\n".join(["Sample;speed [mm/s];COF", *lines]))
+    said = "row 3 has no 'Sample', which names the curve of other rows"
+    assert said in refusal(path)
+    with pytest.raises(sb.InputError, match=said):
+        sb.bench.read(path)
+
+
+def test_text_between_the_rows_that_gives_another_value_is_not_passed_over(subtests, written):
+    forces = table("speed [mm/s];Friction force [N]", speed, friction)
+    turns = table("Speed [rpm];COF", lambda u, mu: u, friction)
+    for name, (first, second, block) in {
+        "load": ("Load: 1 N", "Load: 2 N", PLAIN),
+        "load of a force": ("Load: 1 N", "Load: 2 N", forces),
+        "radius": ("Track radius: 10 mm", "Track radius: 20 mm", turns),
+        "comments": ("# viscosity: 1 mPas", "# viscosity: 2 mPas", PLAIN),
+        "below the header": (PLAIN.split("\n")[0] + "\n# Load: 1 N", "# Load: 2 N", PLAIN.split("\n", 1)[1]),
+        "above the header": ("Radius: 3 mm", "Track radius: 20 mm\n" + turns, ""),
+    }.items():
+        with subtests.test(name=name):
+            path = written(f"{first}\n{block}\n{second}\n{block}")
+            assert "give two values of" in refusal(path)
+            with pytest.raises(sb.InputError, match="give two values of"):
+                sb.bench.read(path)
+    blocks = written(f"Load: 1 N\n{PLAIN}\nLoad: 2 N\n{PLAIN}")
+    assert "give two values of 'Load'" in refusal(blocks, geometry="line")
+    assert read(blocks, files={"rig.csv": {"load": "3 N"}}).inputs == ({"load": 3.0},)
+    same = written(f"Load: 1 N\nTrack diameter: 40 mm\n{turns}\nLoad: 1.0 N\nTrack radius: 20 mm\n{turns}")
+    assert read(same).values.max() == pytest.approx(2 * np.pi * 0.02 * 300 / 60) and read(same).inputs == ({"load": 1.0},)
+
+
+def test_units_of_columns_are_units_of_lines_above_them(written):
+    found = read(written(f"Load: 0.3 kg\nViscosity: 50 mPas\n{PLAIN}"))
+    assert found.inputs[0] == {"load": pytest.approx(0.3 * 9.80665), "viscosity": pytest.approx(0.05)}
+
+
+def test_a_setting_in_brackets_is_no_unit_of_friction(written):
+    names = ["COF (1 N)", "COF (5 mN)"]
+    path = written(table("speed [mm/s];" + ";".join(names), speed, friction, lambda u, mu: 0.9 * mu))
+    assert read(path, columns={"friction": names}).curves == tuple(names)
+    assert "has the unit '100 x'" in refusal(written(PLAIN.replace("COF", "COF (100 x)")))
+
+
+def test_a_second_load_is_asked_for_by_its_own_name(written):
+    path = written(table("Normal force [N];Load [N];speed [mm/s];COF", lambda u, mu: 2, lambda u, mu: 3, speed, friction))
+    assert "'Load [N]' and one that the rig measured both look like load" in refusal(path)
+    assert read(path, columns={"load": "Load [N]"}).inputs == ({"load": 3.0},)
 
 
 def test_a_name_twice_stops_the_reading_only_where_it_is_needed(written):

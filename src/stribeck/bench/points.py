@@ -217,7 +217,8 @@ def _zero_of(
 
 def _load(raw: Raw, each: Pass) -> float:
     """Return the mean load of a pass [N], NaN where the file has none."""
-    return math.nan if raw.load is None else float(np.nanmean(raw.load[each.rows]))
+    loads = np.array([]) if raw.load is None else raw.load[each.rows]
+    return float(np.nanmean(loads)) if np.isfinite(loads).any() else math.nan
 
 
 def _inverse(design: Array, errors: Array) -> Array:

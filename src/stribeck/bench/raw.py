@@ -17,7 +17,7 @@ from stribeck.files.cells import is_named, rows_listed
 from stribeck.files.columns import has_dimension, si_factor
 from stribeck.files.table_reading import read_table
 from stribeck.files.text_table import TextTable
-from stribeck.fits.columns import columns_of, has_column, known_name, with_errors_named
+from stribeck.fits.columns import columns_of, curve_labels, has_column, known_name, with_errors_named
 from stribeck.fits.repeats import FEWEST, errors_of_means
 from stribeck.fits.rig import MADE_FRICTION, column_of, measured, prepared, temperatures
 from stribeck.fits.stated import inputs_said
@@ -73,8 +73,7 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
     """Return the series of a file; refuse one that has none in a sentence."""
     asked, settings = settings, replace(settings, geometry="point")  # a rig measures forces
     table = with_errors_named(read_table(path, settings.header_row, knows=known_name, sheet=settings.sheet))
-    forces = (column_of(table, meaning, settings) for meaning in ("normal_force", "friction_force", "torque"))
-    table = without_codes_of_forces(table, list(filter(None, forces)))
+    table = without_codes_of_forces(table, settings)
     written = table.header
     table, zero = _zero_of_force(table, settings)
     own, load = settings, measured(table, "normal_force", settings)
@@ -333,7 +332,7 @@ def _curves(
 ) -> tuple[Indices, tuple[tuple[str, dict[str, float]], ...]]:
     """Return the curve of each row, and name and inputs of each curve."""
     given = [name for name in columns if name in settings.inputs.quantities and name not in ("speed", "boundary_friction")]
-    labels = table.column(columns["curve"][0]) if "curve" in columns else ("",) * len(table.rows)
+    labels = curve_labels(table, columns)
     series = {name: checked(table, columns[name][0], name, settings) for name in given}
     keys: dict[tuple[str, tuple[tuple[str, float], ...]], int] = {}
     found = []

@@ -15,7 +15,8 @@ MISSING_CELLS = frozenset({"", "-", "--", "---", "na", "n/a", "nan", "null", "no
 FORMULA_ERROR = re.compile(r"#(?:n/a|nv|div/0!|value!|wert!|num!|zahl!|ref!|bezug!)", re.IGNORECASE)
 
 _MISSING = re.compile(
-    rf"[*#-]{{2,}}|[+-]?nan\(?\w*\)?|[+-]?1\.#\w+|[+-]?inf(?:inity)?|void|invalid|nodata|overflow|ovr|ovf|{FORMULA_ERROR.pattern}"
+    rf"[*#-]{{2,}}|[+-]?nan\(?\w*\)?|[+-]?1\.#\w+|[+-]?inf(?:inity)?|void|invalid|nodata|over(?:flow|load|range)|"
+    rf"ovr(?:ld)?|ovf|o\.?l\.?|n\.[ad]\.|\(null\)|>{{2,}}|{FORMULA_ERROR.pattern}"
 )
 
 # A number whose signs may stand between thousands
@@ -39,6 +40,9 @@ _STATISTIC = re.compile(
     r"\s*[\[(](mean|average|avg|median|sd|s\.d\.|std|st\.? ?dev\.?|se|sem|err(?:or)?|std\.? ?(?:dev|error)\.?)[\])]",
     re.IGNORECASE,
 )
+
+# Brackets that say under which load, say, a column was measured, and no unit
+_SETTING = re.compile(r"[0-9]+(?:[.,][0-9]+)? ?(?:[mk]?N|[mk]?g|mm/s|°C|mPa ?s|cSt)")
 
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]*)[\])]")
 
@@ -68,6 +72,8 @@ def split_header(header: str) -> tuple[str, str]:
     if parts is None or not parts[1]:
         return header.strip(), ""
     unit = next(unit for unit in parts.groups()[1:] if unit is not None).strip()
+    if _SETTING.fullmatch(unit):
+        return header.strip(), ""
     return parts[1].strip(), "" if unit in QUANTITY_LETTERS else re.sub("_per_|_", "/", unit)
 
 

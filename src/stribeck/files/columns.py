@@ -6,8 +6,9 @@ import contextlib
 import functools
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NoReturn
 
 import numpy as np
 
@@ -27,9 +28,11 @@ from stribeck.files.text_table import TextTable
 from stribeck.files.writing import PathLike, path_of
 from stribeck.quantities.units import InputError, RowError, show, to_si
 
-__all__ = ["BARE", "Column", "Columns", "has_dimension", "read_columns", "si_factor", "stated_in"]
+__all__ = ["BARE", "Column", "Columns", "has_dimension", "read_columns", "refuse_two_values", "si_factor", "stated_in"]
 
-BARE = {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01, "percent": 0.01, "‰": 0.001}  # Units of a bare number
+BARE = {"%": 0.01, "percent": 0.01, "‰": 0.001} | dict.fromkeys(
+    ("", "-", "–", "—", "/", "1", "N/N", "none", "dimensionless", "unitless"), 1.0
+)  # Units of a bare number
 
 IN_WORDS = {"time": "seconds", "length": "metres"}  # SI units of columns that may leave theirs out
 
@@ -67,6 +70,8 @@ def si_factor(unit: str, dimension: str, name: str) -> float:
         return {"m": 1e-6, "k": 1.0, "l": 0.45359237}.get(text[0], 1e-3) * STANDARD_GRAVITY
     if dimension == "rotation" and _TURNS_PER_SECOND.fullmatch(text):
         return 2 * math.pi
+    if dimension == "rotation":
+        text = text.replace("°", "deg")
     if dimension == "viscosity":
         text = re.sub("(?<=Pa)s$", "*s", text)  # mPas, as rheometers write it, can be nothing else
     if dimension == "number":
@@ -184,17 +189,29 @@ def read_columns(path: PathLike, advice: str, *choices: Mapping[str, Column], ga
     return Columns(table, in_si, taken, units, places, tuple(notes))
 
 
+def refuse_two_values(table: TextTable, rows: Sequence[int], names: Sequence[str]) -> NoReturn:
+    """Refuse a file whose lines give two values of one quantity, of which no row says which is its own."""
+    first, second = rows
+    said = show(names[0]) if names[0] == names[1] else f"{show(names[0])} and {show(names[1])}"
+    raise InputError(
+        f"{table.path}: rows {first} and {second} give two values of {said}, and no row of numbers says which is its own; "
+        "write a column with its unit, say one for all in the case ([fit.files], track_radius or arm in [fit]), or split "
+        "the file."
+    )
+
+
 def stated_in(table: TextTable, pattern: str) -> Iterator[tuple[int, str, str, str]]:
-    """Yield row, name, number and unit of each quantity that is called so and that lines above the header give."""
+    """Yield row, name, number and unit of each quantity that is called so and that lines of text give, above or between."""
     for number, name, value, unit in _stated(table):
         if is_named(name, pattern):
             yield number, name, decimal_of(value, table.decimal_sign, table.path, f"row {number}") if unit else value, unit
 
 
 def _stated(table: TextTable) -> Iterator[tuple[int, str, str, str]]:
-    """Yield row, name, number as written and unit of each quantity that lines above the header give."""
-    texts = [text.replace('"', "") for _, text in table.above]
-    for (number, _), text, below in zip(table.above, texts, [*texts[1:], ""], strict=False):
+    """Yield row, name, number as written and unit of each quantity that lines of text give."""
+    lines = (*table.above, *table.between)
+    texts = [text.replace('"', "") for _, text in lines]
+    for (number, _), text, below in zip(lines, texts, [*texts[1:], ""], strict=False):
         # One quantity in a line, several in it, or names whose values stand below.
         pieces = [text, *re.split(r"[;,|]\s+|\t|(?<=[\])]),", text)]
         found = [each for each in (_STATED.fullmatch(piece.strip()) for piece in pieces) if each]

@@ -16,6 +16,9 @@ WIDE_SPACE = "  "  # Separates names of several words in columns that are aligne
 
 SAMPLE_LINES = 200  # Lines of numbers by which the layout of rows without names is found
 
+# Names of a last column of which programs leave the cells out where nothing was remarked
+REMARK = re.compile("(?:comment|remark|note|bemerkung|kommentar)(?:s|en)?", re.IGNORECASE)
+
 MAX_HEADING_LINES = 4  # Lines above rows of numbers that may name columns, units and curves
 
 
@@ -91,7 +94,8 @@ class Heading:
         if len(cells) != width and self.separator == "\t":
             by_spaces = cells_of(text, "")
             cells = by_spaces if len(by_spaces) == width else cells
-        if 0 < len(cells) < width and (filled_up or not (self.is_bare or any(self.names[len(cells) :]))):
+        unwritten = [name for name in self.names[len(cells) :] if name and not REMARK.fullmatch(name)]
+        if 0 < len(cells) < width and (filled_up or not (self.is_bare or unwritten)):
             cells += [""] * (width - len(cells))
         return cells
 

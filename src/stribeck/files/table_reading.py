@@ -142,6 +142,11 @@ def _read(
         units_row=units,
         written=written,
         above=above,
+        between=tuple(
+            (line.number, line.text)
+            for i, line in enumerate(lines[heading.at + 1 :], heading.at + 1)
+            if line.comment or (line.number not in taken and i not in inside)
+        ),
         unread=(*left_out, *(lines[other.at].number for other in tables)),
         notes=notes,
     )

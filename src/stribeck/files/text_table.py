@@ -42,6 +42,7 @@ class TextTable:
     units_row: tuple[str, ...] = ()  # A row of units below the header; empty if there is none
     written: tuple[str, ...] = ()  # Names of the columns as the file has them
     above: tuple[tuple[int, str], ...] = ()  # Number and text of each row above the header
+    between: tuple[tuple[int, str], ...] = ()  # Number and text of each line of text and comment below the header
     unread: tuple[int, ...] = ()  # Rows without numbers of its columns between or below its own, and headers of other tables
     notes: tuple[str, ...] = ()  # Notes on rows and columns that were left out or put together, one sentence each
 

@@ -17,7 +17,7 @@ from stribeck.fits.rig import MADE_FRICTION, MADE_RATIO, MADE_SPEED, PATTERNS, R
 from stribeck.fits.values import ABSCISSAS, Abscissa, dimension_of, is_set, listed, named_in_case, undeclared, unit_in
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["abscissa_of", "columns_of", "has_column", "known_name", "with_errors_named"]
+__all__ = ["abscissa_of", "columns_of", "curve_labels", "has_column", "known_name", "with_errors_named"]
 
 # Headers of a speed that say that it is the sum.
 SUMS = {"sum of speeds", "sum of the speeds", "sum of the surface speeds", "u1 u2"}
@@ -170,10 +170,26 @@ def _refuse_twice(table: TextTable, names: Sequence[str], meaning: str) -> None:
                 f"{table.path}: the column {show(name)} is there twice, with different numbers, and may be {meaning}; give "
                 "each column its own name."
             )
+        other = show(name) if name in table.written else "one that the rig measured"
         raise InputError(
-            f"{table.path}: the columns {show(names[0])} and {show(name)} both look like {meaning}; "
-            f"say which in [fit.columns] of the case."
+            f"{table.path}: the columns {show(names[0])} and {other} both look like {meaning}; "
+            f"say which in [fit.columns] of the case, as in {meaning} = {show(names[0])}."
         )
+
+
+def curve_labels(table: TextTable, columns: dict[str, list[str]]) -> Sequence[str]:
+    """Return the name of the curve of each row; refuse a measured row without one where others have it."""
+    if "curve" not in columns:
+        return ("",) * len(table.rows)
+    name = columns["curve"][0]
+    labels = table.column(name)
+    measured = [any(cells) for cells in zip(*map(table.column, columns["friction"]), strict=True)]
+    missing = [number for number, label, each in zip(table.numbers, labels, measured, strict=True) if each and not label]
+    if missing and any(labels) and name in table.written:
+        raise InputError(
+            f"{table.path}: row {missing[0]} has no {show(name)}, which names the curve of other rows; write it in each row."
+        )
+    return labels
 
 
 def _refuse_logarithm(table: TextTable, name: str, meaning: str) -> None:

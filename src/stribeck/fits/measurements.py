@@ -25,11 +25,11 @@ from stribeck.files.results import Exported, Labelled
 from stribeck.files.table_reading import read_table
 from stribeck.files.text_table import TextTable
 from stribeck.files.writing import PathLike, path_of
-from stribeck.fits.columns import abscissa_of, columns_of, has_column, known_name, with_errors_named
+from stribeck.fits.columns import abscissa_of, columns_of, curve_labels, has_column, known_name, with_errors_named
 from stribeck.fits.repeats import Averaged, Row, average_repeats
 from stribeck.fits.rig import prepared, temperature_note
 from stribeck.fits.stated import entries_of, inputs_said
-from stribeck.fits.strokes import without_stops
+from stribeck.fits.strokes import without_codes_of_forces, without_stops
 from stribeck.fits.values import Abscissa, checked, unit_in
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.keywords import answers_typos
@@ -111,6 +111,7 @@ def error_of(data: Measurements, settings: FitSettings) -> Array | None:
 def read_file(path: PathLike, settings: FitSettings) -> Measurements:
     """Return the measured friction curves of one file, with what its name and the settings say of it."""
     table = with_errors_named(read_table(path_of(path), settings.header_row, knows=known_name, sheet=settings.sheet))
+    table = without_codes_of_forces(table, settings)
     written = table.header
     asked = settings
     table, made, run, settings, of_rig = prepared(table, asked, lambda meaning: has_column(table, asked, meaning))
@@ -125,7 +126,7 @@ def read_file(path: PathLike, settings: FitSettings) -> Measurements:
     frictions = columns["friction"]
     given = [name for name in columns if name in settings.inputs.quantities and name not in ("speed", "boundary_friction")]
     places = checked(table, columns[abscissa][0], abscissa, settings)
-    labels = table.column(columns["curve"][0]) if "curve" in columns else [""] * len(places)
+    labels = curve_labels(table, columns)
     series = {name: checked(table, columns[name][0], name, settings) for name in given}
     measured = {name: checked(table, name, "friction", settings) for name in frictions}
     errors = checked(table, columns["error"][0], "error", settings) if "error" in columns else np.ones(len(places))
@@ -153,7 +154,7 @@ def read_file(path: PathLike, settings: FitSettings) -> Measurements:
         averaged = average_repeats(rows, runs, settings.run_in == "keep")
         rows = averaged.rows
     names, of_row, differing = _curves(table.path, rows, settings, "curve" in columns or len(frictions) > 1)
-    said, of_file = inputs_said(table, settings, Path(path).name, given)
+    said, of_file = inputs_said(table, settings, Path(path).name, list(columns))
     differing = tuple({**of_file, **inputs} for inputs in differing)
     order = sorted(range(len(rows)), key=lambda i: (of_row[i], rows[i][2], rows[i][1]))
     found = Measurements(

@@ -16,14 +16,24 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import decimal_of, is_named, normalised_header
-from stribeck.files.columns import has_dimension, si_factor, stated_in
+from stribeck.files.cells import decimal_of, is_named, normalised_header, rows_listed
+from stribeck.files.columns import has_dimension, refuse_two_values, si_factor, stated_in
 from stribeck.files.text_table import TextTable
 from stribeck.fits.repeats import FEWEST
 from stribeck.fits.values import MADE_FRICTION, dimension_of, is_set, named_in_case, numbers, undeclared, unit_in
 from stribeck.quantities.units import InputError, listed, show
 
-__all__ = ["MADE_FRICTION", "MADE_SPEED", "RIG", "column_of", "measured", "prepared", "temperature_note", "temperatures"]
+__all__ = [
+    "MADE_FRICTION",
+    "MADE_SPEED",
+    "RIG",
+    "column_of",
+    "measured",
+    "prepared",
+    "stated_size",
+    "temperature_note",
+    "temperatures",
+]
 
 # What a column of a rig may be beside those of a friction curve.
 RIG = (
@@ -160,7 +170,8 @@ def temperature_note(table: TextTable) -> tuple[str, ...]:
 def _temperature_columns(table: TextTable) -> list[str]:
     """Return the columns of temperatures, that of the liquid first."""
     names = [name for name in table.written if name in table.header and table.unit(name) in TEMPERATURES]
-    return sorted(names, key=lambda name: re.search("lub|oil|fluid|pot|bath|sample|öl", normalised_header(name)) is None)
+    nearest = ("lub|oil|fluid|öl", "pot|bath|sample", "")
+    return sorted(names, key=lambda name: [re.search(each, normalised_header(name)) is None for each in nearest])
 
 
 def _levelled(
@@ -175,15 +186,22 @@ def _levelled(
     still = sizes <= (ROLLING_RATIO if meaning == "slide_to_roll" else 0.0)
     column = np.where(still, 0.0 if meaning == "slide_to_roll" else np.nan, sizes)
     column[column > 0] = _levels(column[column > 0])
+    apart = (sizes > 0) & np.isnan(column)
+    without = ""
+    if apart.any():
+        numbered = [number for number, each in zip(table.numbers, apart, strict=True) if each]
+        without = f", without row{'s' * (len(numbered) > 1)} {rows_listed(numbered)}, near none"
+        emptied = tuple(("",) * len(row) if each else row for row, each in zip(table.rows, apart, strict=True))
+        table = replace(table, rows=emptied)
     several = np.unique(column[np.isfinite(column)])
     unit = "" if meaning == "slide_to_roll" else " N"
-    listed = " and ".join(f"{value:g}{unit}" for value in several)
+    listed = " and ".join(f"{value:g}{unit}" for value in several) + without
     row = settings.inputs.quantities.get(made)
     if row is None or row.dimension != ("number" if meaning == "slide_to_roll" else "force"):
         labels = [f"{value:g}{unit}" if np.isfinite(value) else "" for value in column]
         advice = f'; give the {made.replace("_", " ")} of each in [fit.curves."{labels[0]}"]'
         if len(several) < 2:
-            return table, ()
+            return table, (f"{show(name)}: {listed}",) if without else ()
         if MADE_CURVE in table.header:
             at = table.header.index(MADE_CURVE)
             labels = [f"{cells[at]}, {label}" for cells, label in zip(table.rows, labels, strict=True)]
@@ -194,14 +212,17 @@ def _levelled(
 
 
 def _levels(values: Array) -> Array:
-    """Return the setting that each measured value belongs to: the median of those that lie together."""
+    """Return the setting that each measured value belongs to: the median of those that lie together; NaN near none."""
     ordered = np.sort(values)
-    groups = np.split(ordered, np.flatnonzero(ordered[1:] > NEXT_LEVEL * ordered[:-1]) + 1)
-    settings = np.array([_rounded(float(np.median(group))) for group in groups if len(group) >= FEWEST])
-    if not settings.size:
-        return np.full(len(values), _rounded(float(np.median(values))) if values.size else np.nan)
-    nearest = np.abs(np.log(settings / values[:, None])).argmin(axis=1)
-    return np.asarray(settings[nearest])
+    groups = np.split(ordered, np.flatnonzero(ordered[1:] > NEXT_LEVEL * ordered[:-1]) + 1) if len(values) else []
+    settings = [group for group in groups if len(group) >= FEWEST]
+    # Values without noise were set, each of them; so were those of a table that has few rows at any.
+    if not settings or all(np.ptp(group) == 0 for group in groups):
+        settings = groups
+    found = np.full(len(values), np.nan)
+    for group in settings:
+        found[(values >= group[0]) & (values <= group[-1])] = _rounded(float(np.median(group)))
+    return found
 
 
 def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
@@ -272,7 +293,7 @@ def _friction(table: TextTable, found: dict[str, list[str]], settings: FitSettin
     if "friction_force" in found:
         force = found["friction_force"][0]
         if "normal_force" not in found:
-            stated = _stated(table, PATTERNS["normal_force"], "force")
+            stated = stated_size(table, PATTERNS["normal_force"], "force")
             if stated is None:
                 return None
             value, number, name = stated
@@ -335,19 +356,26 @@ def _length(table: TextTable, pattern: str, given: float | None) -> tuple[Array,
                 value = decimal_of(found["value"], table.decimal_sign, table.path, show(name))
                 length = float(value) * si_factor(found["unit"], "length", name)
                 return of_all(_radius_of(found["name"]) * length, f"by {show(name)}")
-    stated = _stated(table, pattern, "length")
+    stated = stated_size(table, pattern, "length")
     if stated is None:
         return None
-    length, number, name = stated
-    return of_all(_radius_of(name) * length, f"by row {number}")
+    return of_all(stated[0], f"by row {stated[1]}")
 
 
-def _stated(table: TextTable, pattern: str, dimension: str) -> tuple[float, int, str] | None:
-    """Return a quantity [SI] that a line above the header gives with its unit, the row and its name; None if none does."""
-    for number, name, value, unit in stated_in(table, pattern):
-        if has_dimension(unit or "-", dimension) and float(value) > 0:
-            return float(value) * si_factor(unit, dimension, name), number, name
-    return None
+def stated_size(table: TextTable, pattern: str, dimension: str) -> tuple[float, int, str] | None:
+    """Return a length or force [SI] that other lines than the rows give with its unit, the row and its name; None if none.
+
+    A diameter is halved.
+    """
+    found = [
+        (_radius_of(name) * float(value) * si_factor(unit, dimension, name), number, name)
+        for number, name, value, unit in stated_in(table, pattern)
+        if has_dimension(unit or "-", dimension) and float(value) > 0
+    ]
+    for size, number, name in found[1:]:
+        if not math.isclose(size, found[0][0], rel_tol=1e-9):
+            refuse_two_values(table, (found[0][1], number), (found[0][2], name))
+    return found[0] if found else None
 
 
 def _without_unit(table: TextTable, pattern: str) -> str:
@@ -411,6 +439,12 @@ def _speed_of_rotation(table: TextTable, found: dict[str, list[str]], settings: 
         raise InputError(_of_two(table, "rotation", name, *others))
     if settings.rolls or "slide_to_roll" in found:
         raise InputError(f"{table.path}: {show(name)} is the rotation of one surface where both move; {BOTH_MOVE}.")
+    unit = unit_in(table, name, "rotation", settings)
+    if re.search("angular|winkel", normalised_header(name)) and re.fullmatch(r"1 ?/ ?s|s ?\^?[-−]1|s⁻¹", unit):
+        raise InputError(
+            f"{table.path}: {show(name)} may be in radians or in turns per second, 6.3 times as fast; say rotation = 'rad/s' "
+            "or 'rev/s' in [fit.units], or in the header."
+        )
     radius = _length(table, TRACK, settings.track_radius)
     if radius is None:
         raise InputError(

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from fnmatch import fnmatchcase
 from typing import Any
 
 from stribeck.cases.fit_settings import FitSettings, inputs_of_file
-from stribeck.files.columns import stated_in
+from stribeck.files.columns import has_dimension, refuse_two_values, si_factor, stated_in
 from stribeck.files.text_table import TextTable
-from stribeck.fits.rig import PATTERNS
+from stribeck.fits.rig import PATTERNS, stated_size
 from stribeck.fluids.description import celsius
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import DIMENSIONS, InputError
 
 __all__ = ["entries_of", "inputs_said"]
 
@@ -32,19 +31,24 @@ def inputs_said(table: TextTable, settings: FitSettings, name: str, columns: lis
     Its name counts for more than its lines, and the case for more than its name.
     """
     path = table.path
-    lines = {key: each for key, each in _lines(table, settings) if key not in columns}
-    if "temperature" in lines and "preset" not in settings.liquid:
-        del lines["temperature"]  # by which nothing is known
+    lines = {key: each for key, each in _lines(table, settings).items() if key not in columns}
+    if "preset" not in settings.liquid:
+        lines.pop("temperature", None)  # by which nothing is known
     try:
         of_name = {} if settings.file_names is None else settings.file_names.values(name)
     except InputError as problem:
         raise InputError(f"{path}: {problem}") from None
     given: dict[str, Any] = {}
     of_case = [settings.files[key] for key in entries_of(settings, name)]
-    for rank in ({key: text for key, (text, _) in lines.items()}, of_name, *of_case):
+    for rank in ({key: each[0][0] for key, each in lines.items()}, of_name, *of_case):
         given = _overruled(given, rank)
+    for key, each in lines.items():
+        if len(each) > 1 and given.get(key) == each[0][0]:
+            refuse_two_values(table, (each[0][1], each[1][1]), (key, key))
+    if not {"load", "curve"} & {*columns, *given}:
+        stated_size(table, PATTERNS["normal_force"], "force")  # two forces on a cylinder, whose load they are not
     found = inputs_of_file(path, given, settings.inputs, settings.liquid) if given else {}
-    said = [f"{key} {text} by row {number}" for key, (text, number) in lines.items() if given.get(key) == text]
+    said = [f"{key} {each[0][0]} by row {each[0][1]}" for key, each in lines.items() if given.get(key) == each[0][0]]
     said += [f"{key} {text} by the name of the file" for key, text in of_name.items() if given.get(key) == text]
     return said, found
 
@@ -64,22 +68,25 @@ def _overruled(table: dict[str, Any], by: dict[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in table.items() if key not in without} | by
 
 
-def _lines(table: TextTable, settings: FitSettings) -> Iterator[tuple[str, tuple[str, int]]]:
-    """Yield each input that lines above the header give once, with its text and row."""
-    found: dict[str, dict[str, int]] = {}
+def _lines(table: TextTable, settings: FitSettings) -> dict[str, list[tuple[str, int]]]:
+    """Return the different values that lines of text give of each input, as text, with their rows."""
+    found: dict[str, dict[float, tuple[str, int]]] = {}
     for key, pattern in NAMES.items():
         for number, _, value, unit in stated_in(table, pattern):
-            if unit and _is_value(key, f"{value} {unit}", settings):
-                found.setdefault(key, {}).setdefault(f"{value} {unit}", number)
-    for key, values in found.items():
-        if len(values) == 1:
-            yield key, next(iter(values.items()))
+            texts = [f"{value} {unit}"] if unit else []
+            if unit and key != "temperature" and has_dimension(unit, settings.inputs.quantities[key].dimension):
+                kind = settings.inputs.quantities[key].dimension
+                # Grams and mPas, which files have and cases do not
+                texts.append(f"{float(value) * si_factor(unit, kind, key)!r} {DIMENSIONS[kind].unit}")
+            values = [(each, text) for text in texts if (each := _value(key, text, settings)) is not None]
+            for size, text in values[:1]:
+                found.setdefault(key, {}).setdefault(size, (text, number))
+    return {key: list(values.values()) for key, values in found.items()}
 
 
-def _is_value(key: str, text: str, settings: FitSettings) -> bool:
-    """Return whether text is a value of an input with its unit."""
+def _value(key: str, text: str, settings: FitSettings) -> float | None:
+    """Return the value [SI, degC] that text gives of an input with its unit; None if it gives none."""
     try:
-        celsius(text) if key == "temperature" else settings.inputs.quantities[key].checked(text)
+        return celsius(text) if key == "temperature" else settings.inputs.quantities[key].checked(text)
     except InputError:
-        return False
-    return True
+        return None

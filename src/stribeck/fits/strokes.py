@@ -11,6 +11,7 @@ from stribeck._types import Array, Flags
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import rows_listed
 from stribeck.files.text_table import TextTable
+from stribeck.fits.rig import column_of
 from stribeck.quantities.units import InputError, show
 from stribeck.surfaces.text import MAX_NUMBER, MISSING_CODES
 
@@ -33,9 +34,10 @@ def without_codes(table: TextTable, abscissa: str, friction: Sequence[str]) -> T
     return table
 
 
-def without_codes_of_forces(table: TextTable, names: Sequence[str]) -> TextTable:
+def without_codes_of_forces(table: TextTable, settings: FitSettings) -> TextTable:
     """Return the table with empty cells for forces that programs write as missing or as beyond the range of a sensor."""
-    for name in names:
+    names = (column_of(table, meaning, settings) for meaning in ("normal_force", "friction_force", "torque"))
+    for name in filter(None, names):
         values = table.values(name)
         coded = _are_codes(values) | np.isin(values, list(MISSING_CODES))
         rest = values[~coded & ~np.isnan(values)]

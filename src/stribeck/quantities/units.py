@@ -119,7 +119,7 @@ _ROUGHNESS = re.compile(r"R[aq](?![A-Za-z])", re.IGNORECASE)
 _HARDNESS = re.compile(r"shore|irhd", re.IGNORECASE)
 FROM_HARDNESS = "write shore_a = 70 or shore_d = 50, a bare number, in place of the modulus"
 # Turns per minute
-_TURNS = re.compile(r"(?:r\.?p\.?m\.?|[rU]/min|1? ?/ ?min|min\^?[-−]1|min⁻¹)", re.IGNORECASE)
+_TURNS = re.compile(r"(?:r\.?p\.?m\.?|(?:[rU]|tr)/min|1? ?/ ?min|min\^?[-−]1|min⁻¹)", re.IGNORECASE)
 _EXPONENT = re.compile(r"(?:\^|\*\*)\s*(?:[+-]?[0-9]|\(\s*[+-]?[0-9]\s*\))")
 _UNIT = re.compile(r"(?:1 ?/)?[A-Za-zµμÅ_#()*/ ]*", re.ASCII)
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
