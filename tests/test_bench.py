@@ -140,6 +140,15 @@ def test_a_torque_a_rotation_and_a_load_that_is_off_make_the_same_curve(written)
     assert other.speed == pytest.approx(one.speed, rel=1e-4) and other.friction == pytest.approx(one.friction, rel=1e-3)
 
 
+def test_a_column_of_the_load_may_be_empty(written):
+    rows = stepped(np.random.default_rng(3), 30)
+    without, empty = (
+        sb.bench.read(written("\n".join([header, *(f"{t:.6g};{u:.6g};{end}{abs(f) / n:.6g}" for t, u, n, f in rows)]) + "\n"))
+        for header, end in (("Time [s];Speed [mm/s];COF", ""), ("Time [s];Speed [mm/s];Fz [N];COF", ";"))
+    )
+    np.testing.assert_array_equal(empty.half_width, without.half_width)
+
+
 def test_the_force_without_load_is_its_zero(written):
     rows = stepped(np.random.default_rng(4), ways=(1,), start=0, drift=0, amplitude=0.005)
     apart = np.zeros((60, 4))
