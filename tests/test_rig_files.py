@@ -212,6 +212,7 @@ GERMAN = table("Geschwindigkeit [mm/s];Reibwert", speed, friction).replace(".", 
 
 VARIATIONS = {
     "trailing separators everywhere": PLAIN.replace("\n", ";;\n"),
+    "cells of two lines in the header": PLAIN.replace("speed [mm/s];COF", '"speed\n[mm/s]";"COF\n[-]"'),
     "no cells for remarks": PLAIN.replace("COF", "COF;Comment"),
     "a dash for no unit": PLAIN.replace("COF", "COF [–]"),
     "no unit in words": PLAIN.replace("COF", "COF (dimensionless)"),
@@ -503,6 +504,33 @@ def test_a_second_load_is_asked_for_by_its_own_name(written):
     path = written(table("Normal force [N];Load [N];speed [mm/s];COF", lambda u, mu: 2, lambda u, mu: 3, speed, friction))
     assert "'Load [N]' and one that the rig measured both look like load" in refusal(path)
     assert read(path, columns={"load": "Load [N]"}).inputs == ({"load": 3.0},)
+
+
+def test_two_units_of_one_column_are_refused(written):
+    text = table("speed [mm/s];COF\nm/s;-", speed, friction)
+    assert "column 'speed [mm/s]' has the unit 'm/s' in the row below" in refusal(written(text))
+    assert_on_curve(read(written(text.replace("\nm/s", "\nmm s-1"))))
+
+
+def test_per_cent_of_an_error_is_of_friction_where_friction_has_none(written):
+    text = "\n".join(["speed [mm/s];COF", *(f"{u};{mu:.6f} ± 2 %" for u, mu in ROWS)])
+    found = read(written(text))
+    assert found.error == pytest.approx(0.02 * found.friction)
+    for form in ("{:.4f} % ± 2", "{:.4f} % ± 2 %"):
+        text = "\n".join(["speed [mm/s];COF", *(f"{u};{form.format(100 * mu)}" for u, mu in ROWS)])
+        assert read(written(text)).error == pytest.approx(0.02)
+    bare = table("speed [mm/s];COF [%];SD", speed, lambda u, mu: 100 * mu, lambda u, mu: 2)
+    assert "'SD' has no unit beside friction in %" in refusal(written(bare))
+    assert read(written(bare), units={"error": "%"}).error == pytest.approx(0.02)
+
+
+def test_eta_in_greek_is_a_viscosity_and_no_speed(written):
+    found = read(written(table("ηU [mPa·s·m/s];COF", lambda u, mu: u / 1000, friction)))
+    assert found.abscissa == "speed_viscosity" and found.values.max() == pytest.approx(3e-4)
+
+
+def test_a_line_that_cannot_be_split_is_named_with_its_file(written):
+    assert refusal(written('["speed":1,"cof":0.5}')).startswith(str(written("x").parent))
 
 
 def test_a_name_twice_stops_the_reading_only_where_it_is_needed(written):

@@ -86,7 +86,7 @@ def _quotient(header: str) -> re.Match[str] | None:
 def normalised_header(header: str) -> str:
     """Return the words of a header in lower case, without its unit, what stands in brackets, and signs."""
     words = re.sub(r"\(.*?\)|\[.*?\]", " ", split_header(header)[0]) or header
-    return " ".join(re.sub(r"[^0-9a-zµμäöüß]+", " ", words.lower()).split())
+    return " ".join(re.sub(r"[^0-9a-zµμäöüß]+", " ", words.lower().replace("η", "eta ")).split())
 
 
 def is_named(header: str, pattern: str) -> bool:

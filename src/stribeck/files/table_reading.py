@@ -44,6 +44,9 @@ SAMPLE_ROWS = 200  # Rows of each table by which tables are compared
 
 SETTING_RTOL = 0.05  # Relative difference of numbers up to which a column has only one setting
 
+# A cell in quotes of two lines, as spreadsheets have them in headers
+_BROKEN_CELL = re.compile(r'((?:^|(?<=[\t;,|]))"[^"\r\n]{1,60})\r?\n([^"\r\n]{0,60}"(?=[\t;,|\r\n]))', re.MULTILINE)
+
 _NO_VALUE = re.compile(r"\bno[ _-]?(?:data|value)\b|\bout of range\b", re.IGNORECASE)
 
 
@@ -90,7 +93,11 @@ def _read(
     else:
         lines = _lines_of_text(path, sheet, numbers_in, largest)
     bare = numbers_in is not None
-    heading, same, others = _heading(path, lines, header_row, expected, knows, bare)
+    try:
+        heading, same, others = _heading(path, lines, header_row, expected, knows, bare)
+    except InputError as problem:  # of a line, which does not know its file
+        said = str(problem)
+        raise InputError(said if said.startswith(str(path)) else f"{path}: {said}") from None
     separator, number = heading.separator, lines[heading.at].number
     above = tuple((line.number, line.text) for line in lines[: heading.at])
     header = heading.names
@@ -168,6 +175,7 @@ def _lines_of_text(path: Path, sheet: str | None, numbers_in: Callable[[str], in
     if sheet is not None:
         raise InputError(f"{path} is no workbook, so that it has no sheet {show(sheet)}; take sheet out of [fit].")
     text = text_of(path, largest, "keep the rows and columns that are wanted", "a text file of columns")
+    text = _BROKEN_CELL.sub(r"\1 \2", text)
     lines = ((i, _NO_VALUE.sub("nodata", line).strip("\f\ufeff")) for i, line in enumerate(text.splitlines(), 1))
     filled = [(i, line) for i, line in lines if line.strip(" \t;,|")]
     return _check_size(path, filled) if numbers_in is None else [Line.of(*each, numbers_in) for each in filled]

@@ -131,6 +131,9 @@ class TextTable:
             if usual is None:
                 assert factor is not None
                 usual = factor(unit or self.unit(name), column)
+                below = self.units_row[self.header.index(name)] if self.units_row else ""
+                if below and unit in ("", self.unit(name)) and factor(below, column) != usual:
+                    raise InputError(f"{column} has the unit {show(below)} in the row below; take one of both out.")
             found[i] = number * usual
         return found
 
@@ -245,6 +248,11 @@ def split_errors(table: TextTable) -> TextTable:
         if not any(pairs) or not all(pair or is_missing(cell) for pair, cell in zip(pairs, cells, strict=True)):
             continue
         words, unit = split_header(table.header[at])
+        own = [{part[k].endswith("%") for part, pair in zip(parts, pairs, strict=True) if pair} for k in (0, 1)]
+        if own == [{False}, {True}] and not unit:  # per cent of each value
+            unit, parts = "%", [[part[0], part[-1].rstrip("% ")] for part in parts]
+        elif own == [{True}, {False}]:
+            parts = [[part[0], f"{part[-1]} %"] for part in parts]
         name = f"{words} error [{unit}]" if unit else f"{words} error"
         rows = tuple(
             (*row[:at], *(part if pair else ("", "")), *row[at + 1 :])

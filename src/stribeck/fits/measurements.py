@@ -135,6 +135,11 @@ def read_file(path: PathLike, settings: FitSettings) -> Measurements:
         BARE.get(unit_in(table, columns[each][0], each, settings), 1.0) for each in ("friction", "error") if each in columns
     ]
     is_relative = units[0] == 1.0 and units[-1] < 1.0
+    if "error" in columns and units[0] < 1.0 and not unit_in(table, columns["error"][0], "error", settings):
+        raise InputError(
+            f"{table.path}: {show(columns['error'][0])} has no unit beside friction in %; write [%] in its header if it is in "
+            "the same unit, or [-], or error = '%' in [fit.units]."
+        )
     of_runs = table.column(run) if run else [""] * len(places)
     for i, number in enumerate(table.numbers):
         inputs = {name: float(values[i]) for name, values in series.items()}
