@@ -146,6 +146,7 @@ def test_a_shear_stress_stands_for_the_viscosity_and_a_kinematic_one_is_refused(
     for header, wrong, words in (
         ("shear rate [1/s];viscosity [Pa s]", "0;1", "rate holds 0, row 5; all values must be .* Leave out rest"),
         ("shear rate [1/s];shear stress [Pa]", "1;-1", "viscosity holds -1, row 5"),
+        ("shear rate [1/s];viscosity [Pa s]", "1;9.9E+37", "viscosity holds 9.9e\\+37, row 5"),
     ):
         lines = written(header, measured("cross")).read_text().splitlines()
         path.write_text("\n".join(["Gum", *lines[:2], ";", wrong, *lines[2:]]))
@@ -178,6 +179,19 @@ def test_headings_of_rheometers_name_rate_viscosity_and_stress(subtests, tmp_pat
     with pytest.raises(sb.InputError, match="header is 'n in 1/min, M in mNm', none of which is the shear rate; name the"):
         path.write_text("n in 1/min;M in mNm\n1;2\n")
         sb.fluids.read_flow_curve(path)
+
+
+def test_a_stress_in_another_unit_than_the_viscosity_is_refused(tmp_path):
+    path = tmp_path / "gum.csv"
+    header = "shear rate [1/s];shear stress [Pa];viscosity [mPa s]"
+    for factor in (1.0, 1e3):
+        rows = (f"{x};{x * y};{factor * y}" for x, y in zip(RATE, measured("cross"), strict=True))
+        path.write_text("\n".join([header, *rows]))
+        if factor == 1e3:
+            assert sb.fluids.read_flow_curve(path).measured == pytest.approx(measured("cross"))
+        else:
+            with pytest.raises(sb.InputError, match="shear stress is 1e\\+03 times viscosity times shear rate"):
+                sb.fluids.read_flow_curve(path)
 
 
 def test_a_law_shows_its_numbers_with_their_errors_and_is_the_fluid_of_a_contact():

@@ -1,5 +1,6 @@
 """Heights in the layouts that instruments and programs write: sizes, units, indices, codes and reasons of refusal."""
 
+import math
 import zipfile
 from pathlib import Path
 
@@ -324,6 +325,16 @@ def test_heights_that_reach_to_a_code_are_heights(tmp_path):
 def test_more_columns_than_a_profile_has_are_named(tmp_path):
     with pytest.raises(sb.InputError, match=r"4 columns \('X1', 'Z1', 'X2', 'Z2'\); keep two for a line"):
         read(tmp_path, "X1,Z1,X2,Z2\n" + rows(X, LINE, X, LINE), unit="um")
+
+
+def test_heights_before_their_places_are_not_taken_for_places(subtests, tmp_path):
+    rows = [(f"{i}", f"{math.sin(i):.4f}") for i in range(64)]
+    for header, order in (("Height [um];Position [um]", (1, 0)), ("x (um);z (um);y (um)", (0, 1, 0)), ("z/um;x/um", (1, 0))):
+        with subtests.test(header=header):
+            path = tmp_path / "scan.csv"
+            path.write_text("\n".join([header, *(";".join(row[k] for k in order) for row in rows)]))
+            with pytest.raises(sb.InputError, match="heights stand in the last column"):
+                sb.surfaces.read_topography(path)
 
 
 def test_a_wrong_cell_near_the_top_is_named_and_no_row_is_lost(tmp_path):

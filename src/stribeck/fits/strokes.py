@@ -12,8 +12,8 @@ from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import rows_listed
 from stribeck.files.text_table import TextTable
 from stribeck.fits.rig import column_of
-from stribeck.quantities.units import InputError, show
-from stribeck.surfaces.text import MAX_NUMBER, MISSING_CODES
+from stribeck.quantities.units import MAX_NUMBER, InputError, show
+from stribeck.surfaces.text import MISSING_CODES
 
 __all__ = ["emptied", "without_codes", "without_codes_of_forces", "without_stops"]
 

@@ -43,6 +43,7 @@ STARTS = 6  # First values of the relaxation time, between one over the largest 
 STRONG_EVIDENCE = 6.0  # Difference of the criteria from which the values speak against a law
 MAX_RISE = 3.0  # Standard errors of a rise of the viscosity with the rate from which no law of thinning applies
 NO_SCATTER = 1e-6  # Relative scatter below which values are as good as computed: no law wins by rounding
+UNIT_RATIO = 5.0  # Ratio of a stress to viscosity times rate that only a wrong unit makes; the next one is 10
 POOR_FIT = 0.1  # Rms deviation of the viscosity above which a note says that no law follows it
 UNKNOWN = 0.5  # Standard error of the logarithm of a number above which a note says that the rates do not show it
 
@@ -214,6 +215,16 @@ def read_flow_curve(path: str | os.PathLike[str], *, law: str | None = None) -> 
     if "shear stress" in columns.in_si:
         values = np.divide(values, rates, out=np.full(rates.shape, np.nan), where=rates != 0)
         notes += ("Viscosity is shear stress over shear rate.",)
+    elif "viscosity" in columns.in_si and stress.is_in(columns.table):
+        stresses, _ = stress.numbers(columns.table, stress.names_in(columns.table)[0], gaps=True)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = np.abs(stresses[np.isin(columns.table.numbers, columns.rows)] / (rates * values))
+        apart = float(np.median(ratio[np.isfinite(ratio)])) if np.isfinite(ratio).any() else 1.0
+        if not 1 / UNIT_RATIO < apart < UNIT_RATIO:
+            raise InputError(
+                f"{path}: shear stress is {apart:.3g} times viscosity times shear rate; one of the three has another unit "
+                "than its header says."
+            )
     with columns.named():
         if "kinematic viscosity" in columns.in_si:
             raise InputError("its viscosity is a kinematic one; multiply the column by the density, and write mPa*s above it.")

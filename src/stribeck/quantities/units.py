@@ -83,6 +83,8 @@ DIMENSIONS = {
     "number": Dimension("a bare number", "", "0.5", {0: ""}),
 }
 
+MAX_NUMBER = 1e30  # Size of a number that is no measured value in any unit: 1e37, or the largest number of a float
+
 # What pint may find in the text, so that a sentence can name it; wider than what the package accepts.
 _NOUNS = {kind.unit: kind.noun for kind in DIMENSIONS.values() if kind.unit not in ("", "rad")} | {
     "m^2": "an area",
@@ -338,7 +340,7 @@ def positive_columns(columns: Mapping[str, Any], advice: Mapping[str, str] = Map
         said = listed(f"{name} of shape {each.shape}" for name, each in found.items())
         raise InputError(f"{said}; give columns of as many numbers.")
     for name, values in found.items():
-        wrong = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
+        wrong = np.flatnonzero(~((values > 0) & (values < MAX_NUMBER)))
         if wrong.size:
             text = (
                 f"{name} holds {values[wrong[0]]:g}, {{row}}; all values must be finite and above zero.{advice.get(name, '')}"

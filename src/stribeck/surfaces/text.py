@@ -16,11 +16,19 @@ from pathlib import Path
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.files.cells import NUMBER_WITH_POINT, has_number, is_missing, read_as, rows_listed, thousands_in
+from stribeck.files.cells import (
+    NUMBER_WITH_POINT,
+    has_number,
+    is_missing,
+    normalised_header,
+    read_as,
+    rows_listed,
+    thousands_in,
+)
 from stribeck.files.reading import text_of
 from stribeck.files.table_reading import read_numbers
 from stribeck.files.text_table import TextTable
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.units import MAX_NUMBER, InputError, show, to_si
 from stribeck.surfaces.text_header import Header, header_of, unit_of
 from stribeck.surfaces.topography import MIN_POINTS, Topography, check_missing
 
@@ -34,13 +42,15 @@ TEXT_ENDINGS = (".csv", ".tsv", ".txt", ".dat", ".xyz")  # Endings of plain text
 # Sizes of numbers that instruments write for a missing point
 MISSING_CODES = {10.0**n - 1 for n in range(3, 8)} | {32767.0, 32768.0, 65535.0, 2147483647.0, 2147483648.0}
 
-MAX_NUMBER = 1e30  # Size of a number that is no height in any unit: 1e37, or the largest number of a float
-
 MAX_GRID_DEVIATION = 0.02  # Largest deviation of a position from the even grid, over the spacing
 
 SPACING_RTOL = 0.005  # Relative difference of spacings, one given and one in the file, up to which they agree: files round
 
 MAX_FILE_BYTES = 1_000_000_000
+
+# What columns of heights and of their places are called, without units
+_HEIGHT = re.compile(r"z|heights?|profile(?: height)?|höhe|topography|elevation")
+_PLACE = re.compile(r"[xy]|(?:[xy] )?(?:positions?|distance|lateral|length|coordinate)|weg")
 
 _COUNTER = re.compile(r"|#|n|i|nr|no|idx|index|id|row|line|point|punkt|sample|pt|number|count|unnamed 0", re.IGNORECASE)
 
@@ -68,6 +78,12 @@ def read_text(path: Path, *, unit: str | None, height_unit: str | None, spacing:
             "or three for a map, x, y and height."
         )
     positions = {1: 0, 2: 1, 3: 2}.get(columns, 0)
+    called = list(map(normalised_header, table.names))
+    if positions and _PLACE.fullmatch(called[-1]) and any(map(_HEIGHT.fullmatch, called)):
+        raise InputError(
+            f"{path}: the columns are {', '.join(map(show, table.names))}; heights stand in the last column, behind "
+            "their places."
+        )
     declared = table.units[positions] if columns <= 3 else table.units[0]
     z_name = "height_unit" if height_unit else "unit"
     lateral, vertical = table.header.lateral, declared or table.header.vertical
