@@ -121,6 +121,15 @@ def test_given_errors_set_the_width_and_are_tested(tmp_path):
     assert relative["roughness"].standard_error == pytest.approx(right["roughness"].standard_error, rel=0.05)
 
 
+def test_a_relative_error_beside_an_absolute_one_is_of_the_fitted_friction(tmp_path):
+    """Of measured friction it would favour the lower of two rows and lower the fit by 2 %."""
+    speeds, friction = exact(rows=12)
+    rows = measured(np.repeat(speeds, 2), np.outer(friction, [1.1, 0.9]).ravel())
+    case = with_settings(tmp_path, relative_error=0.1, absolute_error=1e-3)
+    found = sb.fit(rows, case, free=["boundary_friction", "roughness"], intervals=False)
+    assert [each.value for each in found.inputs] == pytest.approx([TRUE.boundary_friction, TRUE.roughness], rel=1e-4)
+
+
 def test_a_prior_adds_its_information(tmp_path):
     data = noisy(8, low=0.02, rows=10)
 

@@ -40,6 +40,8 @@ class Objective:
     sigma: Array | None
     logarithmic: bool  # Whether residuals are of the logarithm of friction
     robust: bool  # Whether the loss is the robust one
+    # Relative and absolute part of sigma where it has both: those of measured friction would favour rows that noise made low.
+    errors: tuple[float, float] | None = None
     scale: float = 1.0  # What the residuals are divided by: the noise where its size comes from the residuals, else 1
 
     def residuals(self, theta: Array) -> tuple[Array, Array, Prediction]:
@@ -99,7 +101,9 @@ def objective(model: FrictionModel, states: States, settings: FitSettings, robus
         return Objective(model, states, None, settings.noise == "relative", robust)
     if model.data.error is None and settings.absolute_error is None and relative is not None:
         return Objective(model, states, np.full(len(sigma), relative), True, robust)
-    return Objective(model, states, sigma, False, robust)
+    absolute = settings.absolute_error
+    has_both = model.data.error is None and relative is not None and absolute is not None
+    return Objective(model, states, sigma, False, robust, (relative or 0.0, absolute or 0.0) if has_both else None)
 
 
 MAD = 1.482602218505602  # Standard deviation over median absolute deviation of a normal distribution
@@ -323,6 +327,13 @@ def settle(goal: Objective, start: Array, on_step: Callable[[], object] | None =
     """Return the minimum of q, with the scale of the noise found from its own residuals where it is not known."""
     found = minimise(goal, start, on_step=on_step)
     count = found.evaluations
+    for _ in range(MOST_ROUNDS):
+        if goal.errors is None:
+            break
+        sigma = np.hypot(goal.errors[0] * found.prediction.friction, goal.errors[1])
+        if np.allclose(sigma, found.objective.size, rtol=SETTLED, atol=0):
+            break
+        found = minimise(replace(goal, sigma=sigma), found.theta, on_step=on_step)
     if goal.sigma is not None:
         return found
     if not goal.robust and not len(goal.priors[0]):
