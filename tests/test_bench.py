@@ -175,6 +175,10 @@ def test_the_curve_is_read_by_fit_as_it_is(tmp_path, capsys):
     answer = call(capsys, "bench", EXAMPLE, "--json")
     said = json.loads(answer.out)
     assert said["friction"] == json.loads(json.dumps(found.to_dict()))["friction"] == pytest.approx(found.friction.tolist())
+    numbers = {
+        name for name, each in said.items() if isinstance(each, list) and isinstance(each[0:1] and each[0], float | int)
+    }
+    assert numbers <= set(said["units"]) and (said["units"]["load"], said["units"]["speed"]) == ("N", "m/s")
     assert said["paths"] == [str(EXAMPLE)] and said["files"] == []
 
 

@@ -114,11 +114,15 @@ def test_the_command_prints_a_table_and_draws(tmp_path, capsys):
     answer = call(capsys, *tokens, "--plot", picture)
     assert (answer.code, answer.err) == (0, "")
     assert "standard errors after it" in answer.out and picture.stat().st_size > 5000
-    runs = json.loads(call(capsys, *tokens, "--json").out)["runs"]
+    planned = json.loads(call(capsys, *tokens, "--json").out)
+    runs = planned["runs"]
+    assert set(runs[0]) - {"errors"} == set(planned["units"])
+    assert [planned["units"][name] for name in ("speed", "load", "viscosity")] == ["m/s", "N/m", "Pa s"]
     assert len(runs) == 2 and {run["speed"] for run in runs} <= {1e-3, 0.1}
     compared = call(capsys, "compare", data, case, "--models", "cavitation", "--free", "boundary_friction", "--json",
         "--plot", tmp_path / "laws.png", "--out", tmp_path / "laws.csv")  # fmt: skip
     laws = json.loads(compared.out)["laws"]
+    assert json.loads(compared.out)["units"]["boundary_friction"] == "1"
     assert compared.code == 0 and all(set(each["values"]) == {"boundary_friction"} for each in laws)
     lines = (tmp_path / "laws.csv").read_text().splitlines()
     assert (tmp_path / "laws.png").stat().st_size > 5000 and sum(each["name"] in "".join(lines) for each in laws) == 2
@@ -146,7 +150,8 @@ def test_the_law_that_made_the_data_is_preferred():
     text = str(found)
     for caveat in ("which of these is nearest to the data, not that it is right", "errors of rows are independent"):
         assert caveat in text
-    assert json.loads(json.dumps(found.to_dict()))["laws"][0]["difference"] == 0
+    said = json.loads(json.dumps(found.to_dict()))
+    assert said["laws"][0]["difference"] == 0 and said["units"]["roughness"] == "m"
 
 
 def test_the_criterion_of_a_comparison_is_that_of_akaike_for_small_samples(found):

@@ -376,6 +376,7 @@ def test_a_fit_that_ran_out_of_steps_says_so(monkeypatch, tmp_path, capsys):
     found = json.loads(answer.out)
     assert answer.code == 1 and "did not converge" in answer.err and "did not converge" in found["message"]
     assert found["converged"] is False and not (tmp_path / "fitted.toml").exists()
+    assert {*found["curves"][0], *found["rows"]} - {"name"} <= set(found["units"]) and found["units"]["speed"] == "m/s"
 
 
 FEW = {

@@ -35,6 +35,7 @@ def test_the_answer_comes_first_and_fits_a_screen(capsys):
 
 def test_the_json_is_what_python_finds(capsys):
     found = leak(capsys, SEAL, "--diameter", "40 mm", "--stroke", "0.2")
+    assert set(found["out"]) - {"law"} <= set(found["units"]) and found["units"]["edge_coefficient"] == "Pa m-1/2"
     rows = [line.split(";") for line in SEAL.read_text().splitlines()[3:]]
     x, p = (
         np.array(column, dtype=float) * factor for column, factor in zip(zip(*rows, strict=True), (1e-3, 1e6), strict=True)

@@ -100,6 +100,7 @@ def test_a_loop_that_does_not_determine_its_inputs_says_so(capsys, case, tmp_pat
     assert {name for each in found["undetermined"] for name in each["names"]} == set(free)
     for each in found["inputs"]:
         assert each["interval_95"] == [0, None]  # open
+    assert set(found["rows"]) == set(found["units"]) and found["units"]["time"] == "s"
     assert any("'time' was read in seconds, as its header has no unit" in note for note in found["notes"])
     assert any("rows friction has the sign of the other way" in note for note in found["notes"])
 

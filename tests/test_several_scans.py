@@ -61,6 +61,7 @@ def test_a_roll_off_that_no_scan_shows_alone_has_a_wavelength():
     assert not any("roll_off" in each.fit.found for each in scans)
     surface = combine(scans)
     assert surface.to_dict()["roll_off_wavelength"] == pytest.approx(2 * math.pi / surface.roughness.roll_off)
+    assert surface.to_dict()["units"]["roll_off_wavelength"] == "m"
     assert "roll-off wavelength" in str(surface) and "0 of 2 scans alone do" in str(surface)
 
 

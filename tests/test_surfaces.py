@@ -287,6 +287,9 @@ def test_a_line_and_the_map_that_it_was_cut_from_agree():
     whole = synthetic_topography(surface, (512, 128), STEP, 101)
     of_map = analyse(whole).to_dict()
     of_lines = [analyse(Topography(whole.heights[:, j], (STEP,))).to_dict() for j in (10, 60, 110)]
+    units = of_map["units"]
+    assert {name for name, value in of_map.items() if isinstance(value, float)} <= set(units)
+    assert [units[name] for name in ("h_rms", "size", "q0", "noise_density")] == ["m", "m", "m-1", "m4"]
     for name in ("hurst", "h_rms"):
         mean = np.mean([line[name] for line in of_lines])
         error = math.hypot(of_map[f"{name}_error"], np.mean([line[f"{name}_error"] for line in of_lines]))

@@ -83,6 +83,9 @@ class Inlet(ByValue, Shown):
     spacing: Annotated[float, "step of the table at the edge", "m"]
 
 
+INLET_UNITS = {name: each.unit or "1" for name, each in Inlet._words.items() if name != "law"}
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class PressureFilm(ByValue, Told, Tabled):
     """Films of both directions and what a stroke leaves outside."""
@@ -153,7 +156,8 @@ class PressureFilm(ByValue, Told, Tabled):
         found: dict[str, Any] = {name: getattr(self, name) for name in Films._fields}
         found |= {f"{name}_error": value for name, value in self.error._asdict().items()}
         found |= {name: vars(each).copy() for name, each in zip(("forward_inlet", "backward_inlet"), self.inlets, strict=True)}
-        return found | {"in_range": self.valid, "range": self.range, "notes": list(self.notes)}
+        units = dict.fromkeys(Films._fields, "m") | INLET_UNITS
+        return found | {"in_range": self.valid, "range": self.range, "units": units, "notes": list(self.notes)}
 
     def _card(self) -> Card:
         is_zero = abs(self.net) < NEGLIGIBLE * self.error.net

@@ -121,7 +121,8 @@ class LoopFit(WithFittedInputs, Exported, Told, ByValue):
             "undetermined": [asdict(each) for each in self.undetermined],
             "notes": list(self.notes),
         }
-        return found | {"rows": {name: np.asarray(values).tolist() for name, (_, values, _, _) in self._rows.items()}}
+        rows = {name: np.asarray(values).tolist() for name, (_, values, _, _) in self._rows.items()}
+        return found | {"rows": rows, "units": {name: unit for name, (_, _, unit, _) in self._rows.items()}}
 
     @property
     def _rows(self) -> dict[str, DataColumn]:

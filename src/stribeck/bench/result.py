@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from stribeck._types import Array, Indices
+from stribeck.contacts.geometries import POINT
 from stribeck.files.datasets import Column, write_columns
 from stribeck.files.results import UNWRITTEN, WRITTEN, Exported, Labelled
 from stribeck.files.writing import PathLike
@@ -120,7 +121,13 @@ class BenchCurve(Exported, Told, ByValue):
         """Return points, notes and inputs, ready for JSON."""
         columns = {name: getattr(self, name).tolist() for name in (*POINTS, "error")}
         of = {"paths": list(self.paths), "curves": list(self.curves), "inputs": list(self.inputs)}
-        return of | {"curve": [self.curves[k] for k in self.curve]} | columns | {"notes": list(self.notes)}
+        units = {name: row.unit or "1" for name, row in POINT.quantities.items() for each in self.inputs if name in each}
+        units |= {name: each.unit for name, each in self._words.items() if name in POINTS and each.unit is not None}
+        units |= {"error": "1"} | (
+            {"load_per_length": "N/m"} if any("load_per_length" in each for each in self.inputs) else {}
+        )
+        told = {"notes": list(self.notes), "units": units}
+        return of | {"curve": [self.curves[k] for k in self.curve]} | columns | told
 
     def _labelled(self) -> Labelled:
         names = np.array(self.curves, dtype=object)

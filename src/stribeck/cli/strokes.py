@@ -183,7 +183,9 @@ def leak_command(
         words = {"net": net, "net_error": found.error.net, "decided": abs(net) > found.error.net}
         volume = {"volume": net * swept, "volume_error": found.error.net * swept} if lengths else {}
         ways = {name: {"speed": speed} | vars(each) for (name, each), speed in zip(inlets.items(), speeds, strict=True)}
-        return words | volume | ways | {"in_range": found.valid, "range": found.range, "notes": list(found.notes)}
+        units = found.to_dict()["units"] | {"speed": "m/s"} | ({"volume": "m3"} if lengths else {})
+        told = {"in_range": found.valid, "range": found.range, "units": units, "notes": list(found.notes)}
+        return words | volume | ways | told
 
     answer(json, content, lambda: _leak_lines(found, net, inlets, swept))
     return 0

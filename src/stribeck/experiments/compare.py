@@ -97,7 +97,9 @@ class Comparison(Exported, Told):
     def to_dict(self) -> dict[str, Any]:
         """Return the laws with their criteria and values, ready for JSON."""
         laws = [each.to_dict() | {"values": each.fit.to_si()} for each in self.candidates]
-        return {"laws": laws, "failed": self.failed, "sentence": self.sentence, "caveats": list(CAVEATS)}
+        units = {one.label: one.unit or "1" for each in self.candidates for one in each.fit.inputs}
+        units |= {name: unit for name, (unit, _) in Candidate._labels.items()}
+        return {"laws": laws, "failed": self.failed, "sentence": self.sentence, "caveats": list(CAVEATS), "units": units}
 
     def _labelled(self) -> Labelled:
         columns = columns_of_records("law", self.candidates, Candidate._labels)

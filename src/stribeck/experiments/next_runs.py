@@ -94,6 +94,7 @@ class Plan(Exported, Told):
             "runs": [each.to_dict() | {"errors": each.errors} for each in self.runs],
             "errors_before": self.before,
             "noise": self.noise,
+            "units": {name: unit or self.runs[0].unit for name, (unit, _) in NextRun._labels.items()},
         }
 
     def _labelled(self) -> Labelled:

@@ -26,6 +26,7 @@ from stribeck.fits.measurements import Measurements
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.results import ByValue, Card, Told
 from stribeck.quantities.units import DIMENSIONS
+from stribeck.solver.numbers import units_of_inputs
 
 __all__ = ["Fit", "FitOutcome", "FittedInput", "WithFittedInputs", "format_interval", "format_value", "notes_of", "outcome_of"]
 
@@ -247,6 +248,7 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
                 for name, contact in zip(self.data.curves, self.contacts, strict=True)
             ],
             "rows": {name: np.asarray(values).tolist() for name, (_, values, _, _) in self._rows.items()},
+            "units": units_of_inputs(self.contact) | {name: unit for name, (_, _, unit, _) in self._rows.items()},
         }
 
     @property

@@ -175,7 +175,9 @@ class Surface(Exported, Told):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the numbers of :meth:`to_dataset` in SI units, nan where nothing was found, ready for JSON."""
-        return self._about | plain_numbers(self.numbers) | {"notes": list(self.notes)}
+        units = dict.fromkeys(("spacing", "size"), "m") | dict.fromkeys(("body_curvatures", "reliable_wavenumbers"), "m-1")
+        units |= {name: unit for name, (_, _, unit, _) in number_columns(self.numbers).items()}
+        return self._about | plain_numbers(self.numbers) | {"units": units, "notes": list(self.notes)}
 
     def _labelled(self) -> Labelled:
         about = {"title": "What a scan says of a surface"} | self._about | {"notes": "\n".join(self.notes)}

@@ -126,7 +126,9 @@ class CombinedSurface(Exported, Told):
     def to_dict(self) -> dict[str, Any]:
         """Return the numbers of :meth:`to_dataset` in SI units, and what each scan says by itself, ready for JSON."""
         about = {"scans": [each.to_dict() for each in self.surfaces], "found": list(self.fit.found)}
-        return about | plain_numbers(self.numbers) | {"relative_errors": self.errors, "notes": list(self.notes)}
+        units = {name: unit for name, (_, _, unit, _) in number_columns(self.numbers).items()}
+        told = {"relative_errors": self.errors, "units": units, "notes": list(self.notes)}
+        return about | plain_numbers(self.numbers) | told
 
     def _labelled(self) -> Labelled:
         density = "m3" if self.measured.is_line else "m4"
