@@ -288,6 +288,7 @@ def test_a_measured_curve_is_mapped_shown_fitted_and_removed(open_page, tmp_path
     page.get_by_label("friction", exact=True).select_option("B")
     page.get_by_role("button", name="Read").click()
     page.wait_for_function(f"({CHART})('friction').series.some(s => s.name === 'odd.csv')")
+    page.get_by_text("Read: 'A' as speed; 'B' as friction.").wait_for()
     assert page.locator(".mapping").count() == 0
     page.get_by_role("button", name="Fit", exact=True).click()
     page.get_by_label("roughness", exact=True).uncheck()

@@ -41,6 +41,7 @@ from stribeck.explorer.uploads import (
     read_file,
     read_measured,
     read_scan,
+    reading,
     reading_for_fit,
     shown_name,
     with_scan,
@@ -1111,6 +1112,15 @@ def test_a_measured_curve_is_read(subtests):
             [found] = read_measured("m.csv", text.encode(), START.contact)
             assert found.name == "m.csv"
             assert np.allclose(found.speed, speed, rtol=1e-12) and np.allclose(found.friction, friction, rtol=1e-12)
+
+
+def test_a_page_says_how_a_measured_file_was_read_and_what_it_means():
+    rows = b"mean speed [um/s];COF\n100;0.560\n1.000;0.497\n3.000;\n10.000;0.270\n"
+    [found] = read_measured("m.csv", rows, START.contact)
+    said = reading(found)
+    assert "speed = 2 x 'mean speed [um/s]'" in said and "'1.000' was read as 1, not as 1000." in said
+    assert "1 row without a value left out: 4." in said and "[fit.columns]" not in said
+    assert reading_for_fit(START, found).startswith(said)
 
 
 def test_measured_points_stand_at_their_own_hersey_number_also_after_a_change(subtests):

@@ -596,6 +596,16 @@ def test_marks_between_thousands_are_refused_by_the_sign_of_other_columns_or_nam
     assert not any("was read as" in note for note in read(written(table("speed [mm/s];COF", speed, friction))).notes)
 
 
+def test_marks_that_may_be_of_thousands_are_noted_wherever_a_column_goes(subtests, written):
+    plain = "speed [um/s];COF\n100;0.560\n1.000;0.497\n3.000;0.41\n10.000;0.270\n"
+    made = "mean speed [um/s];Fx [uN];Fz [mN]\n100;560;1.000\n1.000;497;1.000\n3.000;410;1.000\n10.000;270;1.000\n"
+    for text, columns in ((plain, ["speed [um/s]"]), (made, ["mean speed [um/s]", "Fz [mN]"])):
+        for reader in (read, sb.bench.read):
+            with subtests.test(text=text, reader=reader.__name__):
+                notes = reader(written(text)).notes
+                assert all(f"'{column}': '1.000' was read as 1, not as 1000." in notes for column in columns)
+
+
 def test_a_line_above_the_header_says_an_input_in_any_usual_form(subtests, written):
     rows = table("speed [mm/s];COF", speed, friction)
     for line in ("Viscosity:;50 mPa*s", '"Viscosity";"50 mPa*s"', "Viscosity [mPa*s]:;50", "viscosity = 0,05 Pa*s"):

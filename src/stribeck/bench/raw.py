@@ -104,7 +104,7 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
     there = np.isfinite(speed) & np.isfinite(friction) & np.isfinite(time)
     if not there.any():
         raise InputError(f"{table.path}: no row holds both speed and friction; check the columns.")
-    notes = [*table.notes, *time_note]
+    notes = [*table.notes, *table.thousands_noted([names[0] for names in columns.values() if names[0] in written]), *time_note]
     if zero is not None:
         assert load is not None
         friction = friction - zero.at(np.array(table.numbers, float)) / np.abs(load)

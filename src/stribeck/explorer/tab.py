@@ -35,6 +35,7 @@ from stribeck.explorer.uploads import (
     fit_measured,
     free_inputs,
     read_file,
+    reading,
     reading_for_fit,
     with_scan,
 )
@@ -241,6 +242,7 @@ class Tab:
                 self.file = name, content
                 self.show_measured([*(each for each in self.measured if each.file != name), *found])
                 self.page.show(mapping=None)
+                self.message = reading(found[0])
                 self.request()
         except InputError as problem:
             self.file = name, content

@@ -90,11 +90,16 @@ def free_inputs(now: Inputs) -> list[tuple[str, str, bool]]:
     return [(name, now.fields[name].label, name in chosen) for name in FREE_INPUTS if name in now.fields]
 
 
+def reading(measured: Measured) -> str:
+    """Return how a file was read and what was left out or assumed, in sentences, as the commands say it."""
+    return " ".join([measured.source.taken.replace(CHANGE_READ, "."), *measured.source.notes])
+
+
 def reading_for_fit(now: Inputs, measured: Measured) -> str:
     """Return how a file was read, and what of ``[fit]`` the page does not fit, in sentences."""
     left = [name for name in now.case.fit.free if name not in now.fields]
     by_command = f" The page does not fit {listed(left)}, free in [fit]; stribeck fit does." if left else ""
-    return measured.source.taken.replace(CHANGE_READ, ".") + by_command
+    return reading(measured) + by_command
 
 
 def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object], free: Sequence[str] = ()) -> Fitted:

@@ -114,7 +114,7 @@ class Prepared(NamedTuple):
 
 def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], bool], *, signed: bool = False) -> Prepared:
     """Return a table with friction and speed computed from what a rig measured, ``signed`` with the direction of the force."""
-    found = _rig_columns(table, settings)
+    found, source = _rig_columns(table, settings), table
     said = []
     ours = set()
     if not known("friction") or (settings.columns.keys() & FORCES and "friction" not in settings.columns):
@@ -146,7 +146,8 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
         for key, noun, value in (("track_radius", "rotation", settings.track_radius), ("arm", "torque", settings.arm))
         if value is not None and f"{1e3 * value:g} mm of the case" not in told
     ]
-    table = replace(table, notes=(*table.notes, *idle))
+    marked = source.thousands_noted([name for name in source.written if show(name) in told])
+    table = replace(table, notes=(*table.notes, *idle, *marked))
     units = {name: unit for name, unit in settings.units.items() if name not in ours}
     return Prepared(table, tuple(said), found.get("run", [""])[0], replace(settings, units=units), tuple(found))
 
