@@ -178,6 +178,56 @@ def test_small_errors_propagate_by_the_exact_derivatives():
     assert found["friction"].value == pytest.approx(sb.solve(TRUE).friction().total, rel=1e-4)
 
 
+def test_correlated_errors_propagate_by_the_exact_derivatives():
+    errors = {"modulus": 0.02, "viscosity": 0.01, "load": 0.01}
+
+    def width(correlation, names=tuple(errors)):
+        tied = {"modulus": {"load": correlation}} if correlation else {}
+        found = sb.propagate(TRUE, sb.results.StandardErrors({name: errors[name] for name in names}, tied))
+        assert sum(found.contributions.values()) == pytest.approx(1)
+        assert ("with their correlations" in str(found)) == bool(correlation)
+        return {each.name: math.log(each.interval_68[1] / each.interval_68[0]) / 2 for each in found.spreads}
+
+    def slopes(of):
+        ends = ([of(TRUE.replace(**{name: getattr(TRUE, name) * math.exp(s)})) for s in (-0.01, 0.01)] for name in errors)
+        return [math.log(above / below) / 0.02 * errors[name] for name, (below, above) in zip(errors, ends, strict=True)]
+
+    def minimum(contact):
+        return sb.stribeck_curve(contact, speed=("1 mm/s", "1 m/s"), points=3, rtol=1e-5).minimum.speed
+
+    along, against = width(0.8), width(-0.8)
+    for name, of in (("friction", lambda each: sb.solve(each).friction().total), ("minimum of friction", minimum)):
+        modulus, viscosity, load = slopes(of)
+        for sign, found in ((0.8, along), (-0.8, against)):
+            expected = modulus**2 + viscosity**2 + load**2 + 2 * sign * modulus * load
+            assert found[name] ** 2 == pytest.approx(expected, rel=0.05)
+
+
+@pytest.mark.quick
+def test_numbers_that_follow_from_one_hardness_are_correlated_and_what_no_correlation_can_be_is_refused(tmp_path, subtests):
+    path = tmp_path / "seal.toml"
+    ring = {"modulus": None, "shore_a": "70", "load": None, "squeeze": "0.1", "sealed_pressure": '"1 MPa"'}
+    path.write_text(case_text(ring | {"sealed_pressure": None}))
+    errors = sb.load_case(path).errors
+    assert errors.correlations == {frozenset(("modulus", "load")): pytest.approx(0.3 / math.hypot(0.3, 0.1))}
+    path.write_text(case_text(ring))  # most of the load is that of the pressure, which acts on less width of a stiffer ring
+    assert [*sb.load_case(path).errors.correlations.values()] == [pytest.approx(-0.095, abs=2e-3)]  # of 400 000 random rings
+    own = {"alpha": '"2 +- 1 %"', "beta": '"0.06 +- 1 %"', "roughness": '"1 um +- 1 %"'}
+    for table, words in (
+        ({"alpha": "{ radius = 0.5 }"}, "'radius' has no error that could be correlated; known are "),
+        ({"alpha": "{ beta = 1.0 }"}, "alpha and beta = 1.0; it must be between -1 and 1"),
+        ({"alpha": "0.5"}, "alpha = 0.5; it must be a table"),
+        ({"alpha": "{ beta = 0.9, roughness = -0.9 }", "beta": "{ roughness = 0.9 }"}, "contradict one another"),
+    ):
+        path.write_text(case_text(own, correlations=table))
+        with subtests.test(words=words), pytest.raises(sb.InputError, match=f"\\[correlations\\] .*{words}"):
+            sb.load_case(path)
+    path.write_text(case_text(own, correlations={"alpha": "{ beta = 0.9 }"}))
+    case = sb.load_case(path)
+    assert (case.errors | {"load": 0.1}).correlations == case.errors.correlations
+    assert not (case.errors | {"beta": 0.1}).correlations
+
+
 def test_the_probability_of_a_regime_is_that_of_its_speed():
     """Only the viscosity is uncertain, so that the regime ends where speed times viscosity does."""
     curve = sb.stribeck_curve(TRUE, points=21, rtol=1e-4)

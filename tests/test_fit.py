@@ -445,6 +445,18 @@ def test_the_band_is_the_spread_of_the_fitted_curve(fitted):
     assert low * high == pytest.approx(friction**2)
 
 
+def test_errors_of_a_fit_and_of_the_case_that_it_writes_give_its_band(tmp_path, capsys):
+    out = tmp_path / "fitted.toml"
+    assert call(capsys, "fit", MEASURED, CASE, "--out", out).code == 0
+    found, kept = sb.fit(MEASURED, CASE), sb.load_case(out).errors
+    speeds = np.array([5e-3, 1e-1])
+    for speed, friction, low, high in zip(speeds, *found.band(0, speeds), strict=True):
+        for errors in (found.errors, kept):
+            spread = sb.propagate(found.contact.replace(speed=speed), errors, transitions=False)["friction"]
+            assert spread.value == pytest.approx(friction, rel=1e-3)
+            assert math.log(spread.interval_95[1] / spread.interval_95[0]) == pytest.approx(math.log(high / low), rel=0.05)
+
+
 def test_the_command_writes_a_case_that_solves_a_figure_and_json_and_a_short_chain_of_the_posterior_says_so(tmp_path, capsys):
     out, plot = tmp_path / "fitted.toml", tmp_path / "fit.png"
     answer = call(capsys, "fit", MEASURED, CASE, "--out", out, "--plot", plot, "--posterior", "400", "--json")

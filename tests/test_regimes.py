@@ -256,6 +256,17 @@ def test_the_interval_of_a_margin_is_that_of_transitions_solved_again(capsys, tm
         assert found["speed", regime] == pytest.approx(expected, rel=1e-2, abs=1e-3)
 
 
+def test_margins_and_transitions_move_alike_with_correlated_errors(capsys, tmp_path):
+    path = tmp_path / "case.toml"
+    values = {name: repr(value) for name, value in CONTACT.replace(speed="5 mm/s").inputs()}
+    errors = {name: f'"{getattr(CONTACT, name)!r} +- 5 %"' for name in ("alpha", "beta")}
+    path.write_text(case_text(values | errors, correlations={"alpha": "{ beta = 0.9 }"}))
+    found = json.loads(call(capsys, "regimes", path, "--json").out)
+    low, high = found["margins"]["speed"]["more"]["interval_95"]
+    [mark] = [each for each in found["uncertainty"]["spreads"] if "10 %" in each["name"]]
+    assert math.log(high / low) == pytest.approx(math.log(mark["interval_95"][1] / mark["interval_95"][0]), rel=0.03)
+
+
 @pytest.mark.quick
 def test_margins_with_errors_say_their_interval_in_the_sentence(capsys, tmp_path):
     path = tmp_path / "case.toml"

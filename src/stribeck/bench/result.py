@@ -18,6 +18,7 @@ from stribeck.fits.rig import TEMPERATURE_TOLERANCE
 from stribeck.quantities.docstrings import told
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.results import ByValue, Card, Told
+from stribeck.quantities.standard_errors import INTERVAL_95
 
 __all__ = ["BenchCurve"]
 
@@ -71,7 +72,7 @@ class BenchCurve(Exported, Told, ByValue):
     @property
     def error(self) -> Array:
         """Standard error of friction [-]: half of the 95 % interval over 1.96, larger where few values are independent."""
-        found: Array = self.half_width / 1.959964
+        found: Array = self.half_width / INTERVAL_95
         return found
 
     def __len__(self) -> int:

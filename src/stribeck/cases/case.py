@@ -23,6 +23,7 @@ from stribeck.quantities.docstrings import Described
 from stribeck.quantities.keywords import known_names
 from stribeck.quantities.registry import laws_of
 from stribeck.quantities.schema import Input, arguments_of, made_of
+from stribeck.quantities.standard_errors import StandardErrors
 from stribeck.quantities.units import InputError, show
 
 # The facts that are numbers of nothing else: name, label, dimension, a typical value, and where that is from. A new one is a
@@ -153,9 +154,9 @@ class Case(Described):
         "the ``[check]`` table, for :func:`stribeck.check`, in SI units",
     ] = field(default_factory=dict)
     errors: Annotated[
-        dict[str, float],
+        StandardErrors,
         "relative standard errors of the inputs that have one, numbers of the fluid and the solid among them",
-    ] = field(default_factory=dict)
+    ] = field(default_factory=StandardErrors)
     conversions: Annotated[tuple[str, ...], "conversions of data-sheet inputs, one sentence each"] = ()
     tables: Annotated[
         dict[str, Any],

@@ -31,6 +31,7 @@ from stribeck.contacts.parts import PART_INPUTS
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import path_of
 from stribeck.quantities.schema import has_error, relative_error, split_error
+from stribeck.quantities.standard_errors import StandardErrors
 from stribeck.quantities.units import InputError, show
 
 
@@ -46,7 +47,8 @@ def load_case(path: str | os.PathLike[str]) -> Case:
         ``[cavitation]``, ``[flow_factors]`` and ``[solid]`` (see fluids.md), ``[curve]``
         (``over``, ``range``, ``points``), ``[stroke]`` (see strokes.md),
         ``[solver]`` (``rtol``, ``definition``), ``[fit]`` (see fitting.md), ``[bench]`` (see
-        bench.md), ``[check]`` (facts for :func:`stribeck.check`), ``title`` and ``notes``.
+        bench.md), ``[correlations]`` of the errors of inputs (see data_sheet.md), ``[check]`` (facts for
+        :func:`stribeck.check`), ``title`` and ``notes``.
 
     Returns
     -------
@@ -94,6 +96,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         fit = check_fit_table(table.pop("fit", {}), geometry, tables.get("fluid"))
         bench = with_bench_keys(fit, tables, "bench")
         table.pop("bench", None)
+    correlations = table.pop("correlations", {})
     found = _read_contact(table, problems, inputs, elsewhere)
     checked = read_tables(table, _keys_of_case(geometry), problems)
     facts: dict[str, float] = {}
@@ -120,7 +123,13 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         _refuse(path, [in_file(line, "contact") for line in str(problem).splitlines()])
     if "alpha" in found.errors and hasattr(contact.law, "fixed_alpha"):
         _refuse(path, [f"[contact] alpha has no error under law = {show(law)}: it is {contact.alpha:g} by definition."])
-    known = {**found.errors, **errors}
+    known = StandardErrors.of_sources(found.errors) | errors
+    try:
+        stated = StandardErrors(known, correlations)
+        stated.correlations = known.correlations | stated.correlations
+        known = StandardErrors(known, stated.nested)
+    except InputError as problem:
+        _refuse(path, [f"[correlations] {problem}"])
     of_contact: dict[str, Any] = {
         "slide_to_roll": FitSettings.of(contact).slide_to_roll,
         "scales_surface": "surface" in tables and not tables["surface"].get("shape_only", False),
@@ -171,6 +180,7 @@ def _keys_of_case(geometry: Geometry) -> dict[str, Keys]:
         "stroke": KEYS_OF_STROKE,
         "solver": keys_of_solver(rtol),
         **KEYS_OF_SURFACES,
+        "correlations": {},
         "check": dict.fromkeys(FACTS, Key(lambda name, value: FACTS[name].checked(value))),
         "": HEAD,
     }

@@ -98,7 +98,7 @@ class ReadInputs:
 
     given: dict[str, float] = field(default_factory=dict)  # Under the names under which they were given
     values: dict[str, float] = field(default_factory=dict)  # Under those that a contact keeps
-    errors: dict[str, float] = field(default_factory=dict)  # Standard errors over the values, where known
+    errors: dict[str, dict[str, float]] = field(default_factory=dict)  # Over the values, by their independent sources
     sentences: list[str] = field(default_factory=list)  # One for each form whose formula is said
     problems: list[str] = field(default_factory=list)
 
@@ -125,7 +125,7 @@ def read_inputs(
         try:
             if has_errors:
                 value, error = split_error(name, value, row.dimension, row.typical)
-                found.errors |= {} if error is None else {name: error}
+                found.errors |= {} if error is None else {name: {name: error}}
             found.values[name] = row.checked(value)
         except InputError as problem:
             found.problems.append(str(problem))
@@ -180,11 +180,14 @@ def _apply(form: Form, found: ReadInputs, given: Mapping[str, Any], table: Input
     names = [*([form.of] if form.joins else []), *(name for name in form.names if name in values)]
     shown = " and ".join(f"{name} = {_shown(name, values, given)}" for name in names)
     numbers = [*(values[name] for name in form.uses), *(values.pop(name) for name in names)]
-    own = [*(errors.get(name, 0.0) for name in form.uses), *(errors.pop(name, 0.0) for name in names)]
+    own = [*(errors.get(name, {}) for name in form.uses), *(errors.pop(name, {}) for name in names)]
     values[form.of] = form.value(*numbers)
-    slopes = [_slope(form, numbers, i) if error else 0.0 for i, error in enumerate(own)]
-    error = math.hypot(form.error, *(slope * each for slope, each in zip(slopes, own, strict=True)))
-    errors |= {form.of: error} if error else {}
+    brought = {form.formula: form.error} if form.error else {}
+    for i, sources in enumerate(own):
+        slope = _slope(form, numbers, i) if sources else 0.0
+        for source, error in sources.items():
+            brought[source] = brought.get(source, 0.0) + slope * error
+    errors |= {form.of: brought} if brought else {}
     assumed = {name: value for name, value in form.assumed.items() if name not in values}
     values |= assumed
     if form.formula:

@@ -7,7 +7,7 @@ import math
 import os
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -27,6 +27,7 @@ from stribeck.files.writing import PathLike, atomic_write
 from stribeck.fits.result import Fit
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.schema import has_error, split_error
+from stribeck.quantities.standard_errors import StandardErrors
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["case_of", "check_fitted_case", "write_fitted_case"]
@@ -75,7 +76,8 @@ def check_fitted_case(case: Case, names: Sequence[str], path: PathLike) -> None:
         known["beta"] = contact.beta
     changed = contact.replace(**{name: value * TRIAL_FACTOR for name, value in known.items()})
     with TemporaryDirectory() as folder:
-        _write(case, changed, [name for name in names if name in known], lambda name: [], [], Path(folder) / "case.toml", path)
+        free = [name for name in names if name in known]
+        _write(case, changed, free, StandardErrors(), lambda name: [], [], Path(folder) / "case.toml", path)
 
 
 def write_fitted_case(fit: Fit, case: Case, path: PathLike, *, force: bool = False) -> None:
@@ -86,7 +88,7 @@ def write_fitted_case(fit: Fit, case: Case, path: PathLike, *, force: bool = Fal
     about = [f"# Fitted by stribeck {version('stribeck')} to {_sources(fit)}. {fit.outcome.value} {said}"]
     names = list(dict.fromkeys(each.name for each in fit.inputs))
     with atomic_write(path, (".toml",), force=force) as temporary:
-        _write(case, fit.contact, names, lambda name: _comments(name, fit), about, temporary, path)
+        _write(case, fit.contact, names, fit.errors, lambda name: _comments(name, fit), about, temporary, path)
 
 
 def _sources(fit: Fit) -> str:
@@ -98,10 +100,17 @@ Comments = Callable[[str], list[str]]
 
 
 def _write(
-    case: Case, contact: Contact, names: Sequence[str], comments: Comments, about: list[str], temporary: Path, path: PathLike
+    case: Case,
+    contact: Contact,
+    names: Sequence[str],
+    errors: StandardErrors,
+    comments: Comments,
+    about: list[str],
+    temporary: Path,
+    path: PathLike,
 ) -> None:
-    """Write the case with the values of a contact, and check that what is read back is that contact."""
-    edits = _edits(case, contact, names, comments)
+    """Write the case with the values of a contact and their errors, and check that what is read back is that contact."""
+    edits = _edits(case, contact, names, errors, comments)
     text = case.path.read_text(encoding="utf-8-sig")
     temporary.write_text("\n".join([*about, *_edited(text, edits, case.path.parent)]) + "\n", encoding="utf-8")
     try:
@@ -125,6 +134,7 @@ class _Edits:
     at: dict[tuple[str, str], list[str]]
     added: dict[str, list[str]]
     removed: set[str]
+    end: list[str] = field(default_factory=list)  # Of the file
 
     def put(self, table: str, key: str, lines: list[str], instead: Sequence[str] = ()) -> None:
         """Put lines in the place of a key of a table, or of others that say the same, else at its end."""
@@ -133,8 +143,9 @@ class _Edits:
         self.at |= {(table, other): [] for other in others}
 
 
-def _edits(case: Case, contact: Contact, names: Sequence[str], comments: Comments) -> _Edits:
+def _edits(case: Case, contact: Contact, names: Sequence[str], of_names: StandardErrors, comments: Comments) -> _Edits:
     """Return what changes in the file of a case whose contact has other values of some inputs."""
+    errors = StandardErrors({name: each for name, each in case.errors.items() if name not in names}) | of_names
     edits, given = _Edits({}, {}, set()), case.tables.get("contact", {})
     from_table = [table for table in ("surface", "asperities") if table in case.tables]
     free_of_table = [name for name in INPUTS_OF_SURFACES if name in names] if from_table else []
@@ -142,7 +153,7 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], comments: Comment
         table = from_table[0]
         sheet = [key for key in ("ra", "rq") if key in given]
         if free_of_table == ["roughness"] and case.fit.scales_surface and not SPECTRUM & set(case.tables[table]):
-            lines = [*comments("roughness"), _entry("h_rms", contact.roughness, "length")]
+            lines = [*comments("roughness"), _entry("h_rms", contact.roughness, "length", errors.get("roughness"))]
             if sheet:
                 edits.at |= {("contact", key): [] for key in sheet}
                 edits.added[table] = lines
@@ -156,7 +167,7 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], comments: Comment
                 edits.removed.add(table)
             edits.at |= {("contact", key): [] for key in sheet}
             edits.added["contact"] = [
-                line for name in INPUTS_OF_SURFACES for line in (*comments(name), _entry_of(name, contact)) if line
+                line for name in INPUTS_OF_SURFACES for line in (*comments(name), _entry_of(name, contact, errors)) if line
             ]
         names = [name for name in names if name not in INPUTS_OF_SURFACES]
     for name in names:
@@ -164,21 +175,27 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], comments: Comment
         if value is None:
             continue
         place, key = _place(name)
-        lines = [*comments(name), _entry_of(name, contact)]
+        lines = [*comments(name), _entry_of(name, contact, errors)]
         instead = _keys_of(name, given, contact.INPUTS) if place == "contact" else []
         if instead == ["youngs_modulus", "poisson_ratio"]:
             youngs = contact.modulus * (1 - _number(given["poisson_ratio"]) ** 2)
-            edits.put(place, "youngs_modulus", [*lines[:-1], _entry("youngs_modulus", youngs, "pressure")])
+            edits.put(place, "youngs_modulus", [*lines[:-1], _entry("youngs_modulus", youngs, "pressure", errors.get(name))])
         else:
             edits.put(place, key, lines, instead)
+    kept = {frozenset((a, b)): each for a, others in case.tables.get("correlations", {}).items() for b, each in others.items()}
+    errors.correlations = {pair: each for pair, each in kept.items() if pair.isdisjoint(names)} | of_names.correlations
+    edits.removed.add("correlations")
+    if errors.correlations:
+        rows = ((a, ", ".join(f"{b} = {each:.12g}" for b, each in others.items())) for a, others in errors.nested.items())
+        edits.end = ["", "[correlations]", *(f"{name} = {{ {others} }}" for name, others in rows)]
     if (
         isinstance(contact.law, TableLaw)
         and "file" in case.tables.get("table", {})
         and {*INPUTS_OF_SURFACES, "modulus"} & set(names)
     ):
         # The numbers of a file in SI units are those of the contact that it was measured with.
-        rows = {"separation": contact.law.separation, "pressure": contact.law.pressure}
-        edits.at["table", "file"] = [f"{key} = {[float(each) for each in values]}" for key, values in rows.items()]
+        columns = {"separation": contact.law.separation, "pressure": contact.law.pressure}
+        edits.at["table", "file"] = [f"{key} = {[float(each) for each in values]}" for key, values in columns.items()]
     return edits
 
 
@@ -189,7 +206,7 @@ def _edited(text: str, edits: _Edits, folder: Path) -> list[str]:
         if head := _TABLE.fullmatch(line):
             lines += edits.added.get(table, [])
             table = head[1]
-        if table in edits.removed and line.strip():
+        if table.split(".")[0] in edits.removed and line.strip():
             lines.append(f"# before the fit: {line.strip()}")
             continue
         key = re.match(r"\s*(\w+)\s*=", line)
@@ -200,7 +217,7 @@ def _edited(text: str, edits: _Edits, folder: Path) -> list[str]:
             lines.append(_found_from_anywhere(line, folder))
         else:
             lines.append(line)
-    return lines[:-1]
+    return lines[:-1] + edits.end
 
 
 def _found_from_anywhere(line: str, folder: Path) -> str:
@@ -229,13 +246,15 @@ def _comments(name: str, fit: Fit) -> list[str]:
     ]
 
 
-def _entry_of(name: str, contact: Contact) -> str:
+def _entry_of(name: str, contact: Contact, errors: StandardErrors) -> str:
     _, key = _place(name)
-    return _entry(key, getattr(contact, name), contact.INPUTS.rows[name].dimension)
+    return _entry(key, getattr(contact, name), contact.INPUTS.rows[name].dimension, errors.get(name))
 
 
-def _entry(key: str, value: float, dimension: str) -> str:
+def _entry(key: str, value: float, dimension: str, error: float | None = None) -> str:
     text = format_si(value, dimension, DIGITS)
+    if error is not None:
+        return f'{key} = "{text} +- {100 * error:.4g} %"'
     return f"{key} = {text}" if dimension == "number" else f'{key} = "{text}"'
 
 

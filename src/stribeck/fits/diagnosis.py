@@ -25,12 +25,13 @@ from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.least_squares import MAD, NEAR, Minimum
 from stribeck.fits.model import Prediction
 from stribeck.quantities.docstrings import Described
+from stribeck.quantities.standard_errors import INTERVAL_95
 from stribeck.quantities.units import listed
 
 __all__ = ["Quality", "Unidentifiable", "excess_of", "judge_residuals", "undetermined"]
 
 # Standard error of a logarithm from which the 95 % interval is wider than a factor of ten.
-WIDEST = math.log(10.0) / (2 * 1.959963984540054)
+WIDEST = math.log(10.0) / (2 * INTERVAL_95)
 
 SIZES = (Coulomb.size, *(law.size for law in KINDS["asperity_friction"].laws.values() if law is not None))
 

@@ -25,6 +25,8 @@ from stribeck.fits.least_squares import Minimum
 from stribeck.fits.measurements import Measurements
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.results import ByValue, Card, Told
+from stribeck.quantities.schema import MAX_RELATIVE_ERROR
+from stribeck.quantities.standard_errors import INTERVAL_95, StandardErrors
 from stribeck.quantities.units import DIMENSIONS
 from stribeck.solver.numbers import units_of_inputs
 
@@ -168,6 +170,26 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
         known = {"viscosity": self.data.abscissa != "speed", "radius": self.contact.profile is not None}
         there = {name for name in FREE_INPUTS for contact in self.contacts if getattr(contact, name, None) is not None}
         return tuple(name for name in FREE_INPUTS if name in there and name not in fitted and not known.get(name, False))
+
+    @property
+    def errors(self) -> StandardErrors:
+        """Errors of the inputs of ``contact``, with correlations, for :func:`stribeck.propagate`.
+
+        1.96 times each is half of its 95 % interval by the covariance.  What the data leave open within a factor of
+        four or more, or what ended at a bound, has none.
+        """
+        width = math.sqrt(self._threshold) / INTERVAL_95 * np.sqrt(np.diag(self.covariance))
+        relative = np.sqrt(np.expm1(width**2))
+        own = {
+            each.name: k
+            for k, each in enumerate(self.inputs)
+            if each.curve in (None, self.data.curves[0]) and relative[k] <= MAX_RELATIVE_ERROR
+        }
+        found: dict[str, dict[str, float]] = {
+            first: {second: float(self.correlation[own[first], own[second]]) for second in list(own)[k + 1 :]}
+            for k, first in enumerate(own)
+        }
+        return StandardErrors({name: float(relative[k]) for name, k in own.items()}, found)
 
     def band(self, curve: int, values: Array) -> tuple[Array, Array, Array]:
         """Return the fitted friction along a curve with its 95 % band.

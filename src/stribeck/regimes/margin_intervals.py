@@ -21,13 +21,12 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.parts import part_names
 from stribeck.curves.sensitivities import friction_sensitivities
+from stribeck.quantities.standard_errors import INTERVAL_95, StandardErrors
 from stribeck.quantities.units import InputError
 from stribeck.regimes.margins import Crossing, RegimeMargins
 from stribeck.solver.solve_error import SolveError
-from stribeck.uncertainty.propagate import STATE_RTOL, errors_of_kept_inputs, inputs_tied_to
+from stribeck.uncertainty.propagate import STATE_RTOL, errors_of_kept_inputs, moves_of
 from stribeck.uncertainty.result import exact_inputs
-
-QUANTILE = 1.959964  # Standard deviations on each side that hold 95 % of a normal distribution
 
 
 def with_intervals(
@@ -48,7 +47,7 @@ def with_intervals(
         except (InputError, SolveError) as error:
             unknown.append(f"The change to {mark.regime} lubrication along {name} has no interval: {error}")
             return mark
-        reach = math.exp(QUANTILE * sigma)
+        reach = math.exp(INTERVAL_95 * sigma)
         return replace(mark, interval_95=(mark.factor / reach, mark.factor * reach))
 
     found = tuple(
@@ -58,15 +57,14 @@ def with_intervals(
 
 
 def _sigma(
-    contact: Contact, name: str, mark: Crossing, sigmas: Mapping[str, float], by_friction: bool, definition: Definition
+    contact: Contact, name: str, mark: Crossing, sigmas: StandardErrors, by_friction: bool, definition: Definition
 ) -> float:
     """Return the standard deviation of the logarithm of a factor."""
     slopes = _slopes(contact.replace(**{name: mark.value}), by_friction, definition)
     total = 0.0
-    for each, sigma in sigmas.items():
-        moved = inputs_tied_to(contact, each, sigmas)
-        change = -sum(slopes[other] for other in moved if other != name) / slopes[name]
-        total += ((change - (name in moved)) * sigma) ** 2
+    for move in moves_of(contact, sigmas).values():
+        change = -sum(step * slopes[other] for other, step in move.items() if other != name) / slopes[name]
+        total += (change - move.get(name, 0.0)) ** 2
     return math.sqrt(total)
 
 

@@ -16,6 +16,7 @@ from stribeck.experiments.master_curve import MasterCurve
 from stribeck.experiments.next_runs import Plan
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.result import Fit, FitOutcome, FittedInput
+from stribeck.quantities.standard_errors import StandardErrors
 from stribeck.solver.fields import Field
 from stribeck.solver.point.solution import PointSolution
 from stribeck.solver.solution import Profile, Solution
@@ -49,6 +50,7 @@ __all__ = [
     "Profile",
     "Solution",
     "Spread",
+    "StandardErrors",
     "StribeckCurve",
     "StribeckModel",
     "Stroke",

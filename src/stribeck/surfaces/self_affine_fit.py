@@ -17,12 +17,12 @@ from stribeck._types import Array, Flags
 from stribeck.contact_laws.persson import GAMMA, exponential_limit
 from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.quantities.docstrings import Described
+from stribeck.quantities.standard_errors import INTERVAL_95
 from stribeck.quantities.units import InputError, checked_kind
 from stribeck.surfaces.measured_spectrum import MIN_WAVES_IN_SCAN, MeasuredSpectrum, line_density, line_shape
 
 __all__ = ["Estimate", "FitParameters", "SelfAffineFit", "central_differences", "fit_self_affine"]
 
-STANDARD_ERRORS_95 = 1.959964  # Standard errors to each side that hold 95 % of a normal distribution
 
 # Wave numbers of the longest wave of the surface, over that of the scan; the last is as good as none at all
 LONGEST_WAVE_RATIOS = (1.0, 0.3, 0.1, 1e-3)
@@ -50,7 +50,7 @@ class Estimate(Described):
         """Standard error over the value, of which 1.96 reach to the farther end of the interval; None without a lower end."""
         if self.low == 0:
             return None
-        return math.log(max(self.high / self.value, self.value / self.low)) / STANDARD_ERRORS_95
+        return math.log(max(self.high / self.value, self.value / self.low)) / INTERVAL_95
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,9 +150,7 @@ class SelfAffineFit(Described):
                     return np.log(exponential_limit(of.surface(theta, *ends), gamma))
 
                 turn = central_differences(limit, each.theta)[i]
-                bound[i] = math.exp(
-                    profile[at, i] + sign * STANDARD_ERRORS_95 * math.sqrt(float(turn @ each.covariance @ turn))
-                )
+                bound[i] = math.exp(profile[at, i] + sign * INTERVAL_95 * math.sqrt(float(turn @ each.covariance @ turn)))
         if not (known.q0_found or known.roll_off):
             low[1] = 0.0
         alpha, beta = (Estimate(*map(float, row)) for row in zip(np.exp(best), low, high, strict=True))

@@ -19,10 +19,11 @@ from stribeck.files.writing import atomic_write
 from stribeck.quantities.formats import Number, format_si, plain_numbers
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import Card, Told
+from stribeck.quantities.standard_errors import INTERVAL_95
 from stribeck.quantities.units import InputError, show
 from stribeck.surfaces.analysis import Surface, wavelength
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum
-from stribeck.surfaces.self_affine_fit import STANDARD_ERRORS_95, Estimate, SelfAffineFit, fit_self_affine
+from stribeck.surfaces.self_affine_fit import Estimate, SelfAffineFit, fit_self_affine
 
 __all__ = ["CombinedSurface", "combine", "surface_table", "write_surface_table"]
 
@@ -273,12 +274,12 @@ def _half_width(values: Array) -> float:
 
 def _wider(name: str, value: float, error: float, half_width: float) -> float:
     """Return the larger of a standard error and of that of an interval by scatter."""
-    return max(error, half_width * (1.0 if name == "hurst" else value) / STANDARD_ERRORS_95)
+    return max(error, half_width * (1.0 if name == "hurst" else value) / INTERVAL_95)
 
 
 def _ends(name: str, value: float, error: float) -> tuple[float, float]:
     """Return the 95 % interval of a number with a standard error, in logarithms but of the Hurst exponent."""
-    half = STANDARD_ERRORS_95 * error
+    half = INTERVAL_95 * error
     return (
         (value - half, value + half) if name == "hurst" else (value * math.exp(-half / value), value * math.exp(half / value))
     )

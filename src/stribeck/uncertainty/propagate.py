@@ -26,12 +26,13 @@ from stribeck.quantities.keywords import known_names
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.schema import Input, relative_error
+from stribeck.quantities.standard_errors import INTERVAL_95, StandardErrors
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.solver.solve_error import SolveError
 from stribeck.uncertainty.result import Spread, Uncertainty
-from stribeck.uncertainty.states import LOG_STEP, VISCOUS, SampledStates, films_of
+from stribeck.uncertainty.states import VISCOUS, SampledStates, films_of, moved, step_along
 
-__all__ = ["STATE_RTOL", "Band", "errors_of_kept_inputs", "friction_band", "inputs_tied_to", "propagate"]
+__all__ = ["STATE_RTOL", "Band", "errors_of_kept_inputs", "friction_band", "moves_of", "propagate"]
 
 SAMPLES = 20_000  # Random samples of the inputs
 SEED = 20261122  # Fixed, so that results repeat
@@ -41,8 +42,6 @@ STATE_RTOL = {"line": 1e-5, "point": 1e-4}  # By geometry: a ball takes a tenth 
 CURVE_POINTS = 21  # Points of the curve on which transitions lie
 
 LINEAR_CHANGE = math.log(2.0)  # Change of the logarithm of a speed up to which it is as large to the other side
-
-INTERVAL_95 = 1.96  # Half-width of the 95 % interval of a normal distribution, in standard deviations
 
 
 @one_blas_thread
@@ -57,7 +56,8 @@ def propagate(
 
     .. math:: \ln X_k \sim \mathcal N(\ln x_k, \sigma_k^2), \qquad \sigma_k^2 = \ln(1 + \epsilon_k^2)
 
-    for each input of value x and standard error :math:`\epsilon x`, independent of one another.
+    for each input of value x and standard error :math:`\epsilon x`; independent of one another but for the correlations of
+    their logarithms that errors of a case or a fit bring (:class:`stribeck.results.StandardErrors`).
 
     Parameters
     ----------
@@ -65,7 +65,8 @@ def propagate(
         The contact.
     errors : mapping or "typical"
         Standard error of each uncertain input: a number over the value (0.2 is 20 %), or text, ``"20 %"`` or ``"0.2 um"``.
-        Numbers of the fluid and the solid are among the inputs, as ``relaxation_time`` or ``layer_thickness``.
+        Numbers of the fluid and the solid are among the inputs, as ``relaxation_time`` or ``layer_thickness``.  ``case.errors``
+        and ``fit.errors`` are such mappings.
         ``"typical"`` takes the usual ones of inputs that nobody measured on the contact itself (docs/data_sheet.md).
     definition : {"balanced", "published"}
         Definition of the viscous friction.
@@ -101,42 +102,39 @@ def propagate(
     if not errors:
         raise InputError("errors is empty; name the inputs that are not exact, such as {'load': 0.05}.")
     sigmas = errors_of_kept_inputs(contact, errors)
-    names = list(sigmas)
-    widths = np.array([sigmas[name] for name in names])
-    draws = np.random.default_rng(SEED).standard_normal((SAMPLES, len(names)))
-    offsets = draws * widths
-    moves = [inputs_tied_to(contact, name, sigmas) for name in names]
+    draws = np.random.default_rng(SEED).standard_normal((SAMPLES, len(sigmas)))
+    moves = moves_of(contact, sigmas)
 
     def power(function: Any) -> Array:
-        """Return the powers with which the inputs enter a power law."""
-        return np.array([_power(contact, function, inputs) for inputs in moves]).reshape(len(names), -1)
+        """Return the powers with which the moves enter a power law."""
+        return np.array([_power(contact, function, move) for move in moves.values()]).reshape(len(moves), -1)
 
     groups = contact.groups
     of_groups = power(lambda each: [float(getattr(each.groups, name)) for name in GROUPS])
-    sampled = SampledStates(contact, moves, of_groups, definition, STATE_RTOL[groups.geometry])
+    sampled = SampledStates(contact, tuple(moves.values()), of_groups, definition, STATE_RTOL[groups.geometry])
     solution = sampled.neighbours.solution(groups, contact)
     rule = RULES[groups.geometry]
     inputs = rule.of_contact(contact)
 
     def scale(function: Any) -> Array:
-        return np.asarray(function(contact) * np.exp(offsets @ power(lambda each: [function(each)])[:, 0]))
+        return np.asarray(function(contact) * np.exp(draws @ power(lambda each: [function(each)])[:, 0]))
 
     asperities = contact.friction_of_asperities
     of_rubbing = power(lambda each: [each.friction_of_asperities.factor(each)])[:, 0]
-    of_shearing = np.zeros(len(names))
+    of_shearing = np.zeros(len(moves))
     for name, exponent in _exponents(solution, inputs, definition).items():
         of_shearing += exponent * power(lambda each, name=name: [rule.inputs[name](each)])[:, 0]
     rub = rule.sliding_factor(groups, inputs) * asperities.factor(contact)
-    rubbing, shearing = rub * np.exp(offsets @ of_rubbing), contact.beta * np.exp(offsets @ of_shearing)
+    rubbing, shearing = rub * np.exp(draws @ of_rubbing), contact.beta * np.exp(draws @ of_shearing)
 
     def friction_of(states: dict[str, Array]) -> Array:
         return np.asarray(rubbing * states[asperities.observable] + shearing * states["viscous"])
 
     notes: tuple[str, ...] = ()
-    states, method = sampled.off_atlas(offsets), "atlas"
+    states, method = sampled.off_atlas(draws), "atlas"
     if states is None:
         method = "solver"
-        states, notes = sampled.solved(draws, widths, friction_of)
+        states, notes = sampled.solved(draws, friction_of)
     share = states["contact_load_share"]
     dry, viscous, friction = rubbing * states[asperities.observable], shearing * states["viscous"], friction_of(states)
     given = solution.friction(definition=definition)
@@ -156,11 +154,11 @@ def propagate(
         spreads.append(_spread("lambda_ratio", labels["lambda_ratio"], solution.lambda_ratio, ratio))
     if transitions and contact.speed > 0 and groups.geometry == "line":
         spreads += _transitions(contact, sigmas, definition)
-    middle = sampled.at(np.zeros(len(names)))
+    middle = sampled.at(np.zeros(len(moves)))
     amount, by_drag = asperities.amount(solution)[0], middle.slopes[:, VISCOUS]
     slopes = rub * amount * (sampled.log_slopes(asperities.observable, middle) + of_rubbing)
     slopes += contact.beta * (by_drag + middle.values[VISCOUS] * of_shearing)
-    parts = dict(zip(names, ((slopes * widths) ** 2).tolist(), strict=True))
+    parts = dict(zip(moves, (slopes**2).tolist(), strict=True))
     total = sum(parts.values()) or 1.0
     regime_of_samples = regime_numbers(1 - share, friction_share(dry, viscous))
     return Uncertainty(
@@ -175,7 +173,7 @@ def propagate(
     )
 
 
-def errors_of_kept_inputs(contact: Contact, errors: Mapping[str, Any]) -> dict[str, float]:
+def errors_of_kept_inputs(contact: Contact, errors: Mapping[str, Any]) -> StandardErrors:
     """Return the standard error of the logarithm of each uncertain input that a contact keeps."""
     rows = contact.INPUTS.rows
     found: dict[str, float] = {}
@@ -199,7 +197,7 @@ def errors_of_kept_inputs(contact: Contact, errors: Mapping[str, Any]) -> dict[s
         found[name] = math.sqrt(math.log1p(relative**2))
     for name in found.keys() & PART_INPUTS.keys():
         _check_range(PART_INPUTS[name], getattr(contact, name), found[name])
-    return {name: found[name] for name in rows if name in found}
+    return StandardErrors({name: found[name] for name in rows if name in found}, getattr(errors, "nested", None))
 
 
 def _check_range(row: Input, value: float, sigma: float) -> None:
@@ -213,9 +211,13 @@ def _check_range(row: Input, value: float, sigma: float) -> None:
             )
 
 
-def inputs_tied_to(contact: Contact, name: str, sigmas: Mapping[str, float]) -> tuple[str, ...]:
-    """Return the inputs that move together with one."""
-    return ("roughness", "beta") if name == "roughness" and follows_surface(contact, {name, *sigmas}) else (name,)
+def moves_of(contact: Contact, sigmas: StandardErrors) -> dict[str, dict[str, float]]:
+    """Return the independent moves of the logarithms of uncertain inputs, each by the first input that it moves."""
+    names, steps = list(sigmas), np.array([*sigmas.values()])[:, None] * np.linalg.cholesky(sigmas.matrix)
+    moves = {name: dict(zip(names[k:], steps[k:, k].tolist(), strict=True)) for k, name in enumerate(names)}
+    for move in moves.values() if follows_surface(contact, sigmas) else ():
+        move |= {"beta": move["roughness"]} if "roughness" in move else {}
+    return {name: {each: step for each, step in move.items() if step != 0} for name, move in moves.items()}
 
 
 def _exponents(solution: Any, inputs: Mapping[str, float], definition: Definition) -> dict[str, float]:
@@ -231,11 +233,11 @@ def _exponents(solution: Any, inputs: Mapping[str, float], definition: Definitio
     return found
 
 
-def _power(contact: Contact, function: Any, inputs: tuple[str, ...]) -> list[float]:
-    """Return d ln(function)/d ln(inputs) of functions that are power laws, zero where they are zero."""
-    moved = contact.replace(**{name: getattr(contact, name) * math.exp(LOG_STEP) for name in inputs})
-    pairs = zip(function(contact), function(moved), strict=True)
-    return [math.log(after / before) / LOG_STEP if before > 0 else 0.0 for before, after in pairs]
+def _power(contact: Contact, function: Any, move: Mapping[str, float]) -> list[float]:
+    """Return the derivatives of logarithms of functions that are power laws along a move, zero where they are zero."""
+    step = step_along(move)
+    pairs = zip(function(contact), function(moved(contact, move, step)), strict=True)
+    return [math.log(after / before) / step if before > 0 else 0.0 for before, after in pairs]
 
 
 def _spread(name: str, label: str, value: float, samples: Array, dimension: str = "number") -> Spread:
@@ -243,7 +245,7 @@ def _spread(name: str, label: str, value: float, samples: Array, dimension: str 
     return Spread(name, label, float(value), median, (low_68, high_68), (low_95, high_95), dimension)
 
 
-def _transitions(contact: Contact, sigmas: Mapping[str, float], definition: Definition) -> list[Spread]:
+def _transitions(contact: Contact, sigmas: StandardErrors, definition: Definition) -> list[Spread]:
     """Return the speeds of minimum and transitions, moved to either side as far as by each input alone."""
 
     def marks(each: Contact) -> tuple[dict[str, float], Array]:
@@ -255,17 +257,16 @@ def _transitions(contact: Contact, sigmas: Mapping[str, float], definition: Defi
     start, searched = marks(contact)
     falls, rises = dict.fromkeys(start, 0.0), dict.fromkeys(start, 0.0)  # Variances of the logarithm to either side
 
-    def changes(name: str, step: float) -> list[float]:
+    def changes(move: Mapping[str, float], steps: float) -> list[float]:
         """Return the changes of the logarithms, nan where a mark is lost."""
-        factor, tied = math.exp(step), inputs_tied_to(contact, name, sigmas)
-        moved, _ = marks(contact.replace(**{each: getattr(contact, each) * factor for each in tied}))
-        return [math.log(moved[mark] / value) if mark in moved else math.nan for mark, value in start.items()]
+        there, _ = marks(moved(contact, move, steps))
+        return [math.log(there[mark] / value) if mark in there else math.nan for mark, value in start.items()]
 
-    for name, sigma in sigmas.items():
-        if name == "speed":
+    for move in moves_of(contact, sigmas).values():
+        if move.keys() == {"speed"}:
             continue
-        more = changes(name, sigma)
-        less = [-each for each in more] if all(abs(each) < LINEAR_CHANGE for each in more) else changes(name, -sigma)
+        more = changes(move, 1.0)
+        less = [-each for each in more] if all(abs(each) < LINEAR_CHANGE for each in more) else changes(move, -1.0)
         for mark, change in zip((*start, *start), (*more, *less), strict=True):
             falls[mark] += change**2 if change < 0 else 0.0 if change >= 0 else math.inf
             rises[mark] += change**2 if change > 0 else 0.0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -12,6 +11,7 @@ from stribeck.contacts.inputs import follows_surface
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.quantities.formats import format_percent, format_share, format_si
 from stribeck.quantities.results import Card, Told
+from stribeck.quantities.standard_errors import StandardErrors
 from stribeck.quantities.units import DIMENSIONS, listed
 
 __all__ = ["Spread", "Uncertainty"]
@@ -74,12 +74,13 @@ class Uncertainty(Exported, Told):
     _picture = "stribeck.plot.rows.plot_uncertainty"
 
     contact: Annotated[Contact, "the contact with the inputs as given"]
-    errors: Annotated[dict[str, float], "standard error of the logarithm of each uncertain input of the contact"]
+    errors: Annotated[StandardErrors, "standard error of the logarithm of each uncertain input of the contact"]
     spreads: Annotated[tuple[Spread, ...], "friction, films, load shares and transitions"]
     regimes: Annotated[dict[str, float], "probability of boundary, mixed and hydrodynamic lubrication"]
     contributions: Annotated[
         dict[str, float],
-        "share of each input in the variance of ln(friction), by exact derivatives; they sum to one",
+        "share of each input in the variance of ln(friction), by exact derivatives, without what it has in common with those "
+        "before it; they sum to one",
     ]
     method: Annotated[str, '``"atlas"`` or ``"solver"``: where the states of the samples come from']
     notes: Annotated[
@@ -112,6 +113,7 @@ class Uncertainty(Exported, Told):
         """Return spreads, probabilities and contributions in SI units, ready for JSON."""
         return {
             "errors": self.errors,
+            "correlations": self.errors.nested,
             "spreads": [each.to_dict() for each in self.spreads],
             "regime_probabilities": self.regimes,
             "contributions": self.contributions,
@@ -135,6 +137,7 @@ class Uncertainty(Exported, Told):
         names = {"quantity": columns.pop("name")}
         about = {f"probability_{name}": part for name, part in self.regimes.items()}
         about |= {f"error_{name}": error for name, error in self.errors.items()}
+        about |= {f"correlation_{'_'.join(sorted(pair))}": each for pair, each in self.errors.correlations.items()}
         about |= {f"share_{name}": part for name, part in self.contributions.items()}
         title = {"title": "Propagated errors of a state", "method": self.method, "definition": self.definition}
         return columns, names, title | {"notes": "\n".join(self.notes)} | about
@@ -153,7 +156,7 @@ class Uncertainty(Exported, Told):
         return (*exact, *((f"Sources of the variance of friction: {parts}.",) if parts else ()), *self.notes)
 
 
-def exact_inputs(contact: Contact, errors: Collection[str]) -> str:
+def exact_inputs(contact: Contact, errors: StandardErrors) -> str:
     """Return the sentence that says which inputs have an error in intervals, and which count as exact."""
     rows = contact.INPUTS.rows
     known = [row.label for name, row in rows.items() if name in errors]
@@ -162,5 +165,6 @@ def exact_inputs(contact: Contact, errors: Collection[str]) -> str:
         for name, row in rows.items()
         if name not in errors and getattr(contact, name, None) and not (name == "beta" and follows_surface(contact, errors))
     ]
-    counted = f"Intervals count the errors of {listed(known)}{' as independent' if len(known) > 1 else ''}"
+    together = " with their correlations" if errors.correlations else " as independent" if len(known) > 1 else ""
+    counted = f"Intervals count the errors of {listed(known)}{together}"
     return f"{counted}; {listed(exact)} count{'s' if len(exact) == 1 else ''} as exact." if exact else f"{counted}."

@@ -30,7 +30,7 @@ from stribeck.quantities.units import InputError
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["LOG_STEP", "SampledStates", "State", "films_of"]
+__all__ = ["SampledStates", "State", "films_of", "moved", "step_along"]
 
 FILM_NAMES = ("central_gap", "minimum_gap", "flux_gap")
 
@@ -61,7 +61,7 @@ class State(NamedTuple):
     """Logarithm of the asperities' share, viscous friction, the fluid's share and :attr:`SampledStates.logs`."""
 
     values: Array
-    slopes: Array  # Derivatives by the logarithms of the uncertain inputs, shape (inputs, values)
+    slopes: Array  # Derivatives along the moves, shape (moves, values)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,8 +69,8 @@ class SampledStates:
     """States of samples around a contact: their load share, viscous friction and films."""
 
     contact: Contact  # The middle of the samples
-    moves: Sequence[tuple[str, ...]]  # For each uncertain input, what moves together with it
-    of_groups: Array  # Powers with which they enter the three groups
+    moves: Sequence[Mapping[str, float]]  # How far logarithms of inputs move by each of independent standard normal numbers
+    of_groups: Array  # Powers with which the moves enter the three groups
     definition: Definition  # Of friction
     rtol: float  # Relative tolerance of solved states
 
@@ -86,17 +86,17 @@ class SampledStates:
         return (*films_of(self.contact.groups.geometry), *(() if observable == SHARES[0] else (observable,)))
 
     def log_slopes(self, name: str, state: State) -> Array:
-        """Return the derivatives of the logarithm of the asperities' share, or of what is read as one, by the inputs."""
+        """Return the derivatives of the logarithm of the asperities' share, or of what is read as one, along the moves."""
         return np.asarray(state.slopes[:, 0 if name == SHARES[0] else FLUID + 1 + self.logs.index(name)])
 
-    def off_atlas(self, offsets: Array) -> dict[str, Array] | None:
-        """Return states at logarithms of the inputs off the atlas, None if it does not have them all."""
+    def off_atlas(self, draws: Array) -> dict[str, Array] | None:
+        """Return states of standard normal samples off the atlas, None if it does not have them all."""
         groups = self.contact.groups
         is_held = groups.model == BASE_MODEL and self.logs == films_of(groups.geometry)
         if not is_held or atlas.for_groups(groups) is None:
             return None
         moved = {name: np.asarray(getattr(groups, name)) for name in GROUPS}
-        factors = np.exp(offsets @ self.of_groups).T
+        factors = np.exp(draws @ self.of_groups).T
         samples = replace(groups, **{name: here * each for (name, here), each in zip(moved.items(), factors, strict=True)})
         if not np.all(atlas.covers(samples)):
             return None
@@ -106,16 +106,12 @@ class SampledStates:
         found |= {"contact_load_share": share, "viscous": viscous / inputs["beta"]}
         if not all(np.isfinite(values).all() for values in found.values()):
             return None
-        return {name: np.broadcast_to(values, (len(offsets),)) for name, values in found.items()}
+        return {name: np.broadcast_to(values, (len(draws),)) for name, values in found.items()}
 
-    def solved(
-        self, draws: Array, sigmas: Array, friction: Callable[[dict[str, Array]], Array]
-    ) -> tuple[dict[str, Array], tuple[str, ...]]:
-        """Return states of standard normal samples of the inputs, read between solved ones, and notes."""
-        directions = self._directions(sigmas)
-        lengths = np.linalg.norm(directions * sigmas, axis=1)
-        units = directions * sigmas / lengths[:, None]
-        places = draws @ directions.T * lengths
+    def solved(self, draws: Array, friction: Callable[[dict[str, Array]], Array]) -> tuple[dict[str, Array], tuple[str, ...]]:
+        """Return states of standard normal samples, read between solved ones, and notes."""
+        units = self._directions()
+        places = draws @ units.T
 
         def solved(place: Array) -> State:
             values, slopes = self.at(place @ units)
@@ -123,30 +119,30 @@ class SampledStates:
 
         return _sampled_until_confirmed(places, solved, friction, self.logs)
 
-    def _directions(self, sigmas: Array) -> Array:
-        """Return the combinations of standard normal inputs that move the state, as orthonormal rows."""
+    def _directions(self) -> Array:
+        """Return the combinations of standard normal numbers that move the state, as orthonormal rows."""
         if self.contact.groups.model == BASE_MODEL:
-            combined, deviations, _ = np.linalg.svd(sigmas[:, None] * self.of_groups, full_matrices=False)
+            combined, deviations, _ = np.linalg.svd(self.of_groups, full_matrices=False)
             return np.asarray(combined.T[deviations > MIN_LOG_DEVIATION])
         changed = [any(models_at_both_sides(self.contact, name) is not None for name in move) for move in self.moves]
-        return np.asarray(np.eye(len(sigmas))[np.any(self.of_groups != 0, axis=1) | changed])
+        return np.asarray(np.eye(len(self.moves))[np.any(self.of_groups != 0, axis=1) | changed])
 
-    def at(self, logs: Array) -> State:
-        """Return the state at logarithms of the inputs over those of the middle."""
-        contact = self._moved(logs)
+    def at(self, draw: Array) -> State:
+        """Return the state of a sample."""
+        contact = self._moved(draw)
         groups = contact.groups
         if not groups.speed > 0:
-            return self._at_rest(logs)
+            return self._at_rest(draw)
         rule = RULES[groups.geometry]
         inputs, names = rule.of_contact(self.contact), rule.parts(self.definition)
         changed = [
-            (k, change)
+            (k, step, change)
             for k, move in enumerate(self.moves if groups.model != BASE_MODEL else ())
-            for change in (models_at_both_sides(contact, name) for name in move)
-            if change is not None
+            for name, step in move.items()
+            if (change := models_at_both_sides(contact, name)) is not None
         ]
         wanted = (*SHARES, *self.logs, *names)
-        observed = self.neighbours.observed(groups, wanted, [change for _, change in changed], inputs=inputs)
+        observed = self.neighbours.observed(groups, wanted, [change for *_, change in changed], inputs=inputs)
         by = dict(zip(wanted, map(Dual, observed.values, observed.slopes), strict=True))
         rows = np.eye(3 + len(changed))
         speed, load = (
@@ -159,36 +155,47 @@ class SampledStates:
         viscous = viscous_of({name: by[name] for name in names}, speed, load, groups.model)
         parts = {name: by[name].value for name in names}
         through = np.zeros(3 + len(changed))  # the film far away
-        for i, (_, (below, above, width)) in enumerate(changed, 3):
+        for i, (*_, (below, above, width)) in enumerate(changed, 3):
             ends = [float(viscous_of(parts, groups.speed, groups.load, each)) for each in (below, above)]
             through[i] = (ends[1] - ends[0]) / width
         drag = Dual(viscous.value, viscous.slope + through) / inputs["beta"]
         found = [_log(by[SHARES[0]]), drag, by[SHARES[1]], *(_log(by[name]) for name in self.logs)]
         slopes = np.array([each.slope for each in found]).T
-        by_inputs = self.of_groups @ slopes[:3]
-        for row, (k, _) in zip(slopes[3:], changed, strict=True):
-            by_inputs[k] += row
-        return State(np.array([float(each.value) for each in found]), by_inputs)
+        along = self.of_groups @ slopes[:3]
+        for row, (k, step, _) in zip(slopes[3:], changed, strict=True):
+            along[k] += step * row
+        return State(np.array([float(each.value) for each in found]), along)
 
-    def _at_rest(self, logs: Array) -> State:
+    def _at_rest(self, draw: Array) -> State:
         """Return the state of a contact at rest, whose films alone move with the inputs."""
 
-        def values(logs: Array) -> Array:
-            contact = self._moved(logs)
+        def values(draw: Array) -> Array:
+            contact = self._moved(draw)
             state = self.neighbours.solution(contact.groups, contact)
             films = [max(float(getattr(state, name)), MIN_SHARE) for name in self.logs]
             return np.array([0.0, 0.0, MIN_SHARE, *np.log(films)])
 
-        steps = LOG_STEP * np.eye(len(logs))
-        return State(values(logs), np.array([(values(logs + step) - values(logs - step)) / (2 * LOG_STEP) for step in steps]))
+        steps = np.diag([step_along(move) for move in self.moves])
+        slopes = [(values(draw + step) - values(draw - step)) / (2 * step.sum()) for step in steps]
+        return State(values(draw), np.array(slopes))
 
-    def _moved(self, logs: Array) -> Contact:
-        """Return the contact with its inputs moved; inputs that several move take the product."""
-        factors: dict[str, float] = {}
-        for inputs, log in zip(self.moves, logs.tolist(), strict=True):
-            for name in inputs:
-                factors[name] = factors.get(name, 1.0) * math.exp(log)
-        return self.contact.replace(**{name: getattr(self.contact, name) * each for name, each in factors.items()})
+    def _moved(self, draw: Array) -> Contact:
+        """Return the contact of a sample."""
+        logs: dict[str, float] = {}
+        for move, number in zip(self.moves, draw.tolist(), strict=True):
+            for name, step in move.items():
+                logs[name] = logs.get(name, 0.0) + number * step
+        return moved(self.contact, logs)
+
+
+def moved(contact: Contact, logs: Mapping[str, float], times: float = 1.0) -> Contact:
+    """Return a contact whose inputs have moved by their logarithms."""
+    return contact.replace(**{name: getattr(contact, name) * math.exp(times * log) for name, log in logs.items()})
+
+
+def step_along(move: Mapping[str, float]) -> float:
+    """Return the step along a move in differences."""
+    return LOG_STEP / max(map(abs, move.values()))
 
 
 def _sampled_until_confirmed(
