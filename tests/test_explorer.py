@@ -684,7 +684,7 @@ def test_a_fit_takes_the_inputs_that_are_chosen_and_tells_intervals_and_residual
     fitted = fit_measured(START, measured, lambda *_: None, ["boundary_friction"])
     [only] = fitted.found.inputs
     assert only.name == "boundary_friction" and only.interval_95[0] < 0.4 < only.interval_95[1]
-    assert fitted.inputs == START.edited({"boundary_friction": only.value})
+    assert fitted.inputs == START.edited({"boundary_friction": only.value}, errors=fitted.found.errors)
     published = START.replace(definition="published")  # as the curve beside the points, and the command
     [other] = fit_measured(published, measured, lambda *_: None, ["boundary_friction"]).found.inputs
     assert other.value == sb.fit(measured.source, published.case, free=["boundary_friction"]).inputs[0].value != only.value
@@ -710,6 +710,10 @@ def test_a_fit_on_the_page_takes_the_table_fit_of_its_case_as_the_command_does(t
         told.value,
         told.interval_95,
     ) and fitted.inputs.contact.boundary_friction == found.value
+    two = fit_measured(now, measured, lambda *_: None, ["boundary_friction", "roughness"])
+    kept = two.inputs.replace(load="50 N/m").case.errors  # with which the page draws its band, and which it saves
+    assert kept == pytest.approx(two.found.errors) and kept.correlations == pytest.approx(two.found.errors.correlations)
+    assert kept.correlations
     each = inputs.Inputs.of(START.tables | {"fit": {"free": ["roughness"], "per_curve": ["roughness"]}})
     text = "curve;speed [mm/s];friction\n" + "".join(f"{name};{row}\n" for name in "ab" for row in rows[3:])
     measured = read_file("measured", "two.csv", text.encode(), each.contact, each.tables["fit"])

@@ -108,7 +108,8 @@ def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object]
     settings = replace(now.case.fit, scales_surface="surface" in now.tables)
     found = fit(measured.source, replace(now.case, fit=settings), free=free or None, on_step=on_step)
     values = {each.name: float(getattr(found.contact, each.name)) for each in found.inputs if each.name in now.fields}
-    after = now.edited({"beta": found.contact.beta} | values if found.contact.beta != now.contact.beta else values)
+    entries = {"beta": found.contact.beta} | values if found.contact.beta != now.contact.beta else values
+    after = now.edited(entries, errors=found.errors)
     fitted = ", ".join(f"{now.fields[name].label.lower()} {now.table.text(name, value, 3)}" for name, value in values.items())
     curves = len(measured.source.curves)
     number = "both" if curves == 2 else f"all {curves}"

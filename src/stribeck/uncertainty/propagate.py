@@ -65,8 +65,8 @@ def propagate(
         The contact.
     errors : mapping or "typical"
         Standard error of each uncertain input: a number over the value (0.2 is 20 %), or text, ``"20 %"`` or ``"0.2 um"``.
-        Numbers of the fluid and the solid are among the inputs, as ``relaxation_time`` or ``layer_thickness``.  ``case.errors``
-        and ``fit.errors`` are such mappings.
+        Numbers of the fluid and the solid are among the inputs, as ``relaxation_time`` or ``layer_thickness``.
+        ``case.errors`` and ``fit.errors`` are such mappings.
         ``"typical"`` takes the usual ones of inputs that nobody measured on the contact itself (docs/data_sheet.md).
     definition : {"balanced", "published"}
         Definition of the viscous friction.

@@ -32,6 +32,7 @@ from stribeck.explorer.inputs.typed import entries_of, examples
 from stribeck.fluids.description import Liquid
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.schema import Input
+from stribeck.quantities.standard_errors import StandardErrors
 from stribeck.quantities.units import DIMENSIONS, InputError, read_number, show, to_si
 
 Abscissa = Literal["speed", "hersey"]
@@ -131,11 +132,16 @@ class Inputs:
         tables["solver"] = tables.get("solver", {}) | settings
         return replace(self.edited(changes, tables), abscissa=abscissa)
 
-    def edited(self, entries: Mapping[str, str | float | None], tables: dict[str, Any] | None = None) -> Inputs:
+    def edited(
+        self,
+        entries: Mapping[str, str | float | None],
+        tables: dict[str, Any] | None = None,
+        errors: StandardErrors | None = None,
+    ) -> Inputs:
         """Return the inputs with other inputs of the contact, which keep their units and errors, and with other tables."""
         tables = self.tables if tables is None else tables
         contact = tables["contact"] = dict(tables["contact"])
-        known, errors = INPUT_TABLES[contact.get("geometry", "line")], self.case.errors
+        known, errors = INPUT_TABLES[contact.get("geometry", "line")], self.case.errors | (errors or {})
         rolls = False
         if known.geometry == "point":
             ratio = entries.get("slide_to_roll", contact.get("slide_to_roll"))
@@ -161,7 +167,10 @@ class Inputs:
             if name in errors and value:
                 entry = f"{entry} +- {100 * errors[name]!r} %"
             contact["entrainment_speed" if of != 1.0 else name] = entry
-        return type(self).of(tables, self.abscissa)
+        tables.pop("correlations", None)
+        uncertain = StandardErrors(type(self).of(tables).case.errors)
+        uncertain.correlations = {pair: each for pair, each in errors.correlations.items() if pair <= uncertain.keys()}
+        return type(self).of(tables | {"correlations": uncertain.nested}, self.abscissa)
 
 
 def _best_unit(value: float, row: Input) -> str:
