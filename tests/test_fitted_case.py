@@ -18,7 +18,7 @@ SEPARATION = np.linspace(0.05, 12, 60)
 
 PERSSON = NOTHING | {"law": '"persson"'}
 CASES = {
-    "exponential of a surface": (NOTHING, {"surface": SURFACE}, "roughness"),
+    "exponential of a surface": (NOTHING, {"surface": SURFACE | {"beta_error": '"20 %"'}}, "roughness"),
     "Persson, Ra": (
         PERSSON | {"ra": '"0.8 um"'},
         {"surface": {key: value for key, value in SURFACE.items() if key != "h_rms"}},
@@ -96,7 +96,9 @@ def check_round_trip(capsys, folder, contact, tables, free):
     out.parent.mkdir()
     answer = call(capsys, "fit", data, case, "--free", *free, "--out", out, "--json")
     assert answer.code == 0, answer.err
-    back = sb.load_case(out).contact
+    fitted = sb.load_case(out)
+    assert ("beta" in fitted.errors) <= ("beta" in free)  # else it follows the height
+    back = fitted.contact
     again = sb.solve_batch(back, speed=speeds, rtol=1e-5).friction.total
     np.testing.assert_allclose(again, friction, rtol=1e-4)
     for each in json.loads(answer.out)["inputs"]:

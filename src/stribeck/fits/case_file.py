@@ -15,7 +15,7 @@ from typing import Any
 
 from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.cases.law import INPUTS_OF_SURFACES
+from stribeck.cases.law import ERRORS_OF_SURFACES, INPUTS_OF_SURFACES
 from stribeck.cases.model_parts import FILES
 from stribeck.cases.reading import load_case
 from stribeck.contact_laws.table import TableLaw
@@ -151,6 +151,7 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], of_names: Standar
     free_of_table = [name for name in INPUTS_OF_SURFACES if name in names] if from_table else []
     if free_of_table and not case.tables[from_table[0]].get("shape_only", False):
         table = from_table[0]
+        edits.at |= {(table, key): [] for key in ERRORS_OF_SURFACES}  # beta follows the height, or has its own in [contact]
         sheet = [key for key in ("ra", "rq") if key in given]
         if free_of_table == ["roughness"] and case.fit.scales_surface and not SPECTRUM & set(case.tables[table]):
             lines = [*comments("roughness"), _entry("h_rms", contact.roughness, "length", errors.get("roughness"))]
@@ -185,9 +186,7 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], of_names: Standar
     kept = {frozenset((a, b)): each for a, others in case.tables.get("correlations", {}).items() for b, each in others.items()}
     errors.correlations = {pair: each for pair, each in kept.items() if pair.isdisjoint(names)} | of_names.correlations
     edits.removed.add("correlations")
-    if errors.correlations:
-        rows = ((a, ", ".join(f"{b} = {each:.12g}" for b, each in others.items())) for a, others in errors.nested.items())
-        edits.end = ["", "[correlations]", *(f"{name} = {{ {others} }}" for name, others in rows)]
+    edits.end = errors.table()
     if (
         isinstance(contact.law, TableLaw)
         and "file" in case.tables.get("table", {})

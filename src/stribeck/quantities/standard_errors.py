@@ -90,6 +90,14 @@ class StandardErrors(dict[str, Any]):
             found.setdefault(first, {})[second] = each
         return found
 
+    def table(self) -> list[str]:
+        """Return the lines of the correlations in a case file; none where there are none."""
+        rows = (
+            (name, ", ".join(f"{other} = {each:.12g}" for other, each in others.items()))
+            for name, others in self.nested.items()
+        )
+        return ["", "[correlations]", *(f"{name} = {{ {others} }}" for name, others in rows)] if self.correlations else []
+
     @property
     def matrix(self) -> Array:
         """The correlations of all errors, in their order."""
