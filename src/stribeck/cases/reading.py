@@ -31,7 +31,7 @@ from stribeck.contacts.parts import PART_INPUTS
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import path_of
 from stribeck.quantities.schema import has_error, relative_error, split_error
-from stribeck.quantities.standard_errors import StandardErrors
+from stribeck.quantities.standard_errors import StandardErrors, errors_of_sources
 from stribeck.quantities.units import InputError, show
 
 
@@ -123,7 +123,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         _refuse(path, [in_file(line, "contact") for line in str(problem).splitlines()])
     if "alpha" in found.errors and hasattr(contact.law, "fixed_alpha"):
         _refuse(path, [f"[contact] alpha has no error under law = {show(law)}: it is {contact.alpha:g} by definition."])
-    known = StandardErrors.of_sources(found.errors) | errors
+    known = errors_of_sources(found.errors) | errors
     try:
         stated = StandardErrors(known, correlations)
         stated.correlations = known.correlations | stated.correlations

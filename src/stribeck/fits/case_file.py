@@ -27,7 +27,7 @@ from stribeck.files.writing import PathLike, atomic_write
 from stribeck.fits.result import Fit
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.schema import has_error, split_error
-from stribeck.quantities.standard_errors import StandardErrors
+from stribeck.quantities.standard_errors import StandardErrors, correlation_table
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["case_of", "check_fitted_case", "write_fitted_case"]
@@ -186,7 +186,7 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], of_names: Standar
     kept = {frozenset((a, b)): each for a, others in case.tables.get("correlations", {}).items() for b, each in others.items()}
     errors.correlations = {pair: each for pair, each in kept.items() if pair.isdisjoint(names)} | of_names.correlations
     edits.removed.add("correlations")
-    edits.end = errors.table()
+    edits.end = correlation_table(errors)
     if (
         isinstance(contact.law, TableLaw)
         and "file" in case.tables.get("table", {})

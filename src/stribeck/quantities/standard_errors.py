@@ -13,7 +13,7 @@ from stribeck._types import Array
 from stribeck.quantities.keywords import known_names
 from stribeck.quantities.units import InputError, checked_kind, show
 
-__all__ = ["INTERVAL_95", "StandardErrors"]
+__all__ = ["INTERVAL_95", "StandardErrors", "correlation_table", "errors_of_sources"]
 
 INTERVAL_95 = 1.959964  # Half of the 95 % interval of a normal distribution, in standard errors
 
@@ -63,17 +63,6 @@ class StandardErrors(dict[str, Any]):
         except np.linalg.LinAlgError:
             raise InputError(f"{show(self.nested)} contradict one another; check their signs and digits.") from None
 
-    @classmethod
-    def of_sources(cls, sources: Mapping[str, Mapping[str, float]]) -> StandardErrors:
-        """Return errors by what each independent source brings, with its sign; some share a source."""
-        total = {name: math.hypot(*each.values()) for name, each in sources.items()}
-        found: dict[str, dict[str, float]] = {}
-        for first, second in combinations(sources, 2):
-            if shared := sources[first].keys() & sources[second].keys():
-                product = sum(sources[first][each] * sources[second][each] for each in shared)
-                found.setdefault(first, {})[second] = product / (total[first] * total[second])
-        return cls(total, found)
-
     def __or__(self, other: Mapping[str, Any]) -> StandardErrors:  # type: ignore[override]
         """Return these errors and others, which are independent of these."""
         found = StandardErrors({**self, **other})
@@ -90,14 +79,6 @@ class StandardErrors(dict[str, Any]):
             found.setdefault(first, {})[second] = each
         return found
 
-    def table(self) -> list[str]:
-        """Return the lines of the correlations in a case file; none where there are none."""
-        rows = (
-            (name, ", ".join(f"{other} = {each:.12g}" for other, each in others.items()))
-            for name, others in self.nested.items()
-        )
-        return ["", "[correlations]", *(f"{name} = {{ {others} }}" for name, others in rows)] if self.correlations else []
-
     @property
     def matrix(self) -> Array:
         """The correlations of all errors, in their order."""
@@ -106,3 +87,22 @@ class StandardErrors(dict[str, Any]):
             i, j = (place[name] for name in pair)
             found[i, j] = found[j, i] = each
         return found
+
+
+def errors_of_sources(sources: Mapping[str, Mapping[str, float]]) -> StandardErrors:
+    """Return errors by what each independent source brings, with its sign; some share a source."""
+    total = {name: math.hypot(*each.values()) for name, each in sources.items()}
+    found: dict[str, dict[str, float]] = {}
+    for first, second in combinations(sources, 2):
+        if shared := sources[first].keys() & sources[second].keys():
+            product = sum(sources[first][each] * sources[second][each] for each in shared)
+            found.setdefault(first, {})[second] = product / (total[first] * total[second])
+    return StandardErrors(total, found)
+
+
+def correlation_table(errors: StandardErrors) -> list[str]:
+    """Return the lines of the correlations in a case file; none where there are none."""
+    rows = (
+        (name, ", ".join(f"{other} = {each:.12g}" for other, each in others.items())) for name, others in errors.nested.items()
+    )
+    return ["", "[correlations]", *(f"{name} = {{ {others} }}" for name, others in rows)] if errors.correlations else []

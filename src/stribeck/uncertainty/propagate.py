@@ -30,7 +30,7 @@ from stribeck.quantities.standard_errors import INTERVAL_95, StandardErrors
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.solver.solve_error import SolveError
 from stribeck.uncertainty.result import Spread, Uncertainty
-from stribeck.uncertainty.states import VISCOUS, SampledStates, films_of, moved, step_along
+from stribeck.uncertainty.states import LOG_STEP, VISCOUS, SampledStates, films_of, moved, size_of
 
 __all__ = ["STATE_RTOL", "Band", "errors_of_kept_inputs", "friction_band", "moves_of", "propagate"]
 
@@ -235,7 +235,7 @@ def _exponents(solution: Any, inputs: Mapping[str, float], definition: Definitio
 
 def _power(contact: Contact, function: Any, move: Mapping[str, float]) -> list[float]:
     """Return the derivatives of logarithms of functions that are power laws along a move, zero where they are zero."""
-    step = step_along(move)
+    step = LOG_STEP / size_of(move)
     pairs = zip(function(contact), function(moved(contact, move, step)), strict=True)
     return [math.log(after / before) / step if before > 0 else 0.0 for before, after in pairs]
 

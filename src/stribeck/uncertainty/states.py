@@ -30,7 +30,7 @@ from stribeck.quantities.units import InputError
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["SampledStates", "State", "films_of", "moved", "step_along"]
+__all__ = ["LOG_STEP", "SampledStates", "State", "films_of", "moved", "size_of"]
 
 FILM_NAMES = ("central_gap", "minimum_gap", "flux_gap")
 
@@ -110,8 +110,9 @@ class SampledStates:
 
     def solved(self, draws: Array, friction: Callable[[dict[str, Array]], Array]) -> tuple[dict[str, Array], tuple[str, ...]]:
         """Return states of standard normal samples, read between solved ones, and notes."""
-        units = self._directions()
-        places = draws @ units.T
+        directions = self._directions()
+        lengths = np.linalg.norm(directions * [size_of(move) for move in self.moves], axis=1)
+        units, places = directions / lengths[:, None], draws @ directions.T * lengths
 
         def solved(place: Array) -> State:
             values, slopes = self.at(place @ units)
@@ -175,7 +176,7 @@ class SampledStates:
             films = [max(float(getattr(state, name)), MIN_SHARE) for name in self.logs]
             return np.array([0.0, 0.0, MIN_SHARE, *np.log(films)])
 
-        steps = np.diag([step_along(move) for move in self.moves])
+        steps = np.diag([LOG_STEP / size_of(move) for move in self.moves])
         slopes = [(values(draw + step) - values(draw - step)) / (2 * step.sum()) for step in steps]
         return State(values(draw), np.array(slopes))
 
@@ -193,9 +194,9 @@ def moved(contact: Contact, logs: Mapping[str, float], times: float = 1.0) -> Co
     return contact.replace(**{name: getattr(contact, name) * math.exp(times * log) for name, log in logs.items()})
 
 
-def step_along(move: Mapping[str, float]) -> float:
-    """Return the step along a move in differences."""
-    return LOG_STEP / max(map(abs, move.values()))
+def size_of(move: Mapping[str, float]) -> float:
+    """Return how far the logarithm moves that moves farthest."""
+    return max(map(abs, move.values()))
 
 
 def _sampled_until_confirmed(
