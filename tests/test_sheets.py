@@ -93,6 +93,8 @@ def test_a_report_says_everything_and_asks_no_server(content):
     assert not re.search(r"<script|<link|@import|url\((?!#)|src=", page)
     assert page.count("<svg") == 1 and "measured" in said.data.path
     [data] = [each.paragraphs for each in said.sections if each.heading == "Data"]
+    [read] = [each for each in data if each.startswith("Read: ")]
+    assert "as speed" in read and "'friction" in read and "[fit.columns]" not in read
     other = [each for each in data if "measured with" in each]  # of the first fluid the curve is drawn
     assert other == ["glycerol 50 %: measured with viscosity 5 mPa*s instead of 50 mPa*s, which the drawn curve has."]
     [inputs] = [each.table for each in said.sections if each.heading == "Inputs"]
