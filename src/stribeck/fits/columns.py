@@ -65,7 +65,9 @@ OTHER_SPEED = (
 PLUS_MINUS = {"±", "+/-", "+-"}
 
 _OF_ERROR = re.compile(rf"{_ERROR}|.* {_ERROR}|{_ERROR} .*")
-_LOGARITHM = re.compile(r"(?<![a-z])(?:log|lg|ln)(?:10|2|e)?(?![a-z])", re.IGNORECASE)
+_LOGARITHM = re.compile(
+    r"(?<![a-z])(?:(?:log|lg|ln)(?:10|2|e)?(?![a-z])|log(?:10)?(?=speed|velocity|friction|cof|mu\b|[uv]\b))", re.IGNORECASE
+)
 _NO_COEFFICIENT = re.compile(
     r"force|kraft|load|torque|moment|time|zeit|step|cycle|lap|point|run|no\b|nr\b|id\b|count|distance|temp", re.IGNORECASE
 )
