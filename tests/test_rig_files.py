@@ -488,6 +488,12 @@ def test_text_between_the_rows_that_gives_another_value_is_not_passed_over(subte
     assert read(same).values.max() == pytest.approx(2 * np.pi * 0.02 * 300 / 60) and read(same).inputs == ({"load": 1.0},)
 
 
+def test_a_mean_load_below_the_rows_is_the_load_that_was_set(written):
+    assert read(written(f"Load: 3 N\n{PLAIN}\nMean load: 2.93 N\n")).inputs == ({"load": 3.0},)
+    forces = table("speed [mm/s];Friction force [N]", speed, lambda u, mu: 3 * mu)
+    assert_on_curve(read(written(f"Load: 3 N\n{forces}\nMean load: 2.93 N\n")))
+
+
 def test_units_of_columns_are_units_of_lines_above_them(written):
     found = read(written(f"Load: 0.3 kg\nViscosity: 50 mPas\n{PLAIN}"))
     assert found.inputs[0] == {"load": pytest.approx(0.3 * 9.80665), "viscosity": pytest.approx(0.05)}

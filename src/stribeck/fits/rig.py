@@ -28,6 +28,7 @@ __all__ = [
     "MADE_SPEED",
     "RIG",
     "column_of",
+    "is_same",
     "measured",
     "prepared",
     "stated_size",
@@ -374,9 +375,14 @@ def stated_size(table: TextTable, pattern: str, dimension: str) -> tuple[float, 
         if has_dimension(unit or "-", dimension) and float(value) > 0
     ]
     for size, number, name in found[1:]:
-        if not math.isclose(size, found[0][0], rel_tol=1e-9):
+        if not is_same(size, found[0][0], measured=dimension == "force"):
             refuse_two_values(table, (found[0][1], number), (found[0][2], name))
     return found[0] if found else None
+
+
+def is_same(one: float, other: float, *, measured: bool) -> bool:
+    """Return whether two values that a file gives are one setting; a measured one is near what was set."""
+    return max(one, other) <= (NEXT_LEVEL if measured else 1 + 1e-9) * min(one, other)
 
 
 def _without_unit(table: TextTable, pattern: str) -> str:

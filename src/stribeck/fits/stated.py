@@ -8,7 +8,7 @@ from typing import Any
 from stribeck.cases.fit_settings import FitSettings, inputs_of_file
 from stribeck.files.columns import has_dimension, refuse_two_values, si_factor, stated_in
 from stribeck.files.text_table import TextTable
-from stribeck.fits.rig import PATTERNS, stated_size
+from stribeck.fits.rig import PATTERNS, is_same, stated_size
 from stribeck.fluids.description import celsius
 from stribeck.quantities.units import DIMENSIONS, InputError
 
@@ -40,15 +40,16 @@ def inputs_said(table: TextTable, settings: FitSettings, name: str, columns: lis
         raise InputError(f"{path}: {problem}") from None
     given: dict[str, Any] = {}
     of_case = [settings.files[key] for key in entries_of(settings, name)]
-    for rank in ({key: each[0][0] for key, each in lines.items()}, of_name, *of_case):
+    for rank in ({key: text for key, [(_, text, _), *_] in lines.items()}, of_name, *of_case):
         given = _overruled(given, rank)
-    for key, each in lines.items():
-        if len(each) > 1 and given.get(key) == each[0][0]:
-            refuse_two_values(table, (each[0][1], each[1][1]), (key, key))
+    for key, [(size, text, number), *others] in lines.items():
+        apart = [row for other, _, row in others if not is_same(size, other, measured=key == "load")]
+        if apart and given.get(key) == text:
+            refuse_two_values(table, (number, apart[0]), (key, key))
     if not {"load", "curve"} & {*columns, *given}:
         stated_size(table, PATTERNS["normal_force"], "force")  # two forces on a cylinder, whose load they are not
     found = inputs_of_file(path, given, settings.inputs, settings.liquid) if given else {}
-    said = [f"{key} {each[0][0]} by row {each[0][1]}" for key, each in lines.items() if given.get(key) == each[0][0]]
+    said = [f"{key} {text} by row {row}" for key, [(_, text, row), *_] in lines.items() if given.get(key) == text]
     said += [f"{key} {text} by the name of the file" for key, text in of_name.items() if given.get(key) == text]
     return said, found
 
@@ -68,9 +69,9 @@ def _overruled(table: dict[str, Any], by: dict[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in table.items() if key not in without} | by
 
 
-def _lines(table: TextTable, settings: FitSettings) -> dict[str, list[tuple[str, int]]]:
-    """Return the different values that lines of text give of each input, as text, with their rows."""
-    found: dict[str, dict[float, tuple[str, int]]] = {}
+def _lines(table: TextTable, settings: FitSettings) -> dict[str, list[tuple[float, str, int]]]:
+    """Return the different values that lines of text give of each input, also as text, with their rows."""
+    found: dict[str, dict[float, tuple[float, str, int]]] = {}
     for key, pattern in NAMES.items():
         for number, _, value, unit in stated_in(table, pattern):
             texts = [f"{value} {unit}"] if unit else []
@@ -80,7 +81,7 @@ def _lines(table: TextTable, settings: FitSettings) -> dict[str, list[tuple[str,
                 texts.append(f"{float(value) * si_factor(unit, kind, key)!r} {DIMENSIONS[kind].unit}")
             values = [(each, text) for text in texts if (each := _value(key, text, settings)) is not None]
             for size, text in values[:1]:
-                found.setdefault(key, {}).setdefault(size, (text, number))
+                found.setdefault(key, {}).setdefault(size, (size, text, number))
     return {key: list(values.values()) for key, values in found.items()}
 
 
