@@ -93,6 +93,20 @@ def test_an_end_of_an_interval_is_where_the_best_fit_of_the_other_inputs_is_wors
         assert math.sqrt(misfit(held) - misfit(fitted)) == pytest.approx(quantile, abs=0.02)
 
 
+def test_an_end_of_an_interval_is_right_where_other_inputs_reach_their_bounds(tmp_path):
+    """A plateau alone: roughness and modulus go anywhere together.  The falls foretold beyond bounds opened the lower end."""
+    from scipy.stats import t
+
+    bounds = {"roughness": (3e-7, 3e-6), "modulus": (1e6, 1e7)}
+    data = noisy(7, noise=0.03, low=1e-5, high=3e-4, rows=12)
+    found = sb.fit(data, with_settings(tmp_path, bounds=bounds), free=["boundary_friction", "roughness", "modulus"])
+    for end in found["boundary_friction"].interval_95:
+        case = with_settings(tmp_path, TRUE.replace(boundary_friction=end), bounds=bounds)
+        held = sb.fit(data, case, free=["roughness", "modulus"], intervals=False)
+        rise = sum(held.residuals**2 * held.noise**2 - found.residuals**2 * found.noise**2) / found.noise**2
+        assert math.sqrt(rise) == pytest.approx(t.ppf(0.975, len(data) - 3), abs=0.03)
+
+
 def test_intervals_of_nearly_linear_inputs_are_those_of_the_covariance(fitted):
     from scipy.stats import t
 

@@ -278,16 +278,22 @@ def _held(J: Array, flat: float) -> Array:
 
 
 def _step_left(at: Minimum, moving: Indices) -> tuple[Array, float]:
-    """Return the Gauss-Newton step that is left, and how far q falls along it, by its derivatives."""
-    free = moving[~at.at_bound[moving]]
+    """Return the Gauss-Newton step that is left within the bounds, and how far q falls along it, by its derivatives."""
+    from scipy.optimize import lsq_linear
+
+    step = np.zeros(len(at.theta))
+    if not len(moving):
+        return step, 0.0
     rows, means = at.objective.priors
     influence, _ = at.objective.influence(at.residuals)
-    weights = np.where(at.residuals == 0, 1.0, influence / np.where(at.residuals == 0, 1.0, at.residuals))
-    J = np.concatenate([np.sqrt(weights)[:, None] * at.jacobian, rows])[:, free]
-    gradient = at.jacobian[:, free].T @ influence + rows[:, free].T @ (rows @ at.theta - means)
-    step = np.zeros(len(at.theta))
-    step[free] = -np.linalg.lstsq(J.T @ J, gradient, rcond=1e-12)[0]
-    return step, max(0.0, -float(gradient @ step[free]))
+    weights = np.sqrt(np.where(at.residuals == 0, 1.0, influence / np.where(at.residuals == 0, 1.0, at.residuals)))
+    J = np.concatenate([weights[:, None] * at.jacobian, rows])[:, moving]
+    r = np.concatenate([weights * at.residuals, rows @ at.theta - means])
+    still = 1e-6 * np.linalg.norm(J) * np.eye(len(moving))  # Holds inputs that change no residual
+    low, high = (each[moving] - at.theta[moving] for each in at.objective.bounds)
+    held = np.concatenate([-r, np.zeros(len(moving))])
+    step[moving] = lsq_linear(np.concatenate([J, still]), held, (np.minimum(low, 0.0), np.maximum(high, 1e-300)), "bvls").x
+    return step, max(0.0, float(r @ r - np.sum((J @ step[moving] + r) ** 2)))
 
 
 def _scaled(at: Minimum) -> Minimum:
