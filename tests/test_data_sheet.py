@@ -218,6 +218,7 @@ def test_numbers_that_follow_from_one_hardness_are_correlated_and_what_no_correl
         ({"alpha": "{ beta = 1.0 }"}, "alpha and beta = 1.0; it must be between -1 and 1"),
         ({"alpha": "0.5"}, "alpha = 0.5; it must be a table"),
         ({"alpha": "{ beta = 0.9, roughness = -0.9 }", "beta": "{ roughness = 0.9 }"}, "contradict one another"),
+        ({"alpha": "{ beta = 0.9 }", "beta": "{ alpha = -0.9 }"}, "beta and alpha have two correlations"),
     ):
         path.write_text(case_text(own, correlations=table))
         with subtests.test(words=words), pytest.raises(sb.InputError, match=f"\\[correlations\\] .*{words}"):
@@ -226,6 +227,14 @@ def test_numbers_that_follow_from_one_hardness_are_correlated_and_what_no_correl
     case = sb.load_case(path)
     assert (case.errors | {"load": 0.1}).correlations == case.errors.correlations
     assert not (case.errors | {"beta": 0.1}).correlations
+    for same in ({"load": 0.1} | case.errors, case.errors.copy(), sb.results.StandardErrors(case.errors)):
+        assert same.correlations == case.errors.correlations
+    path.write_text("correlations = false\n" + case_text(own))
+    with pytest.raises(sb.InputError, match="correlations = False; it must be a table"):
+        sb.load_case(path)
+    shape = {"h_rms": '"1 um +- 20 %"', "hurst": 0.8, "longest_wavelength": '"30 um"', "shortest_wavelength": '"1 um"'}
+    path.write_text(case_text(own, surface=shape | {"shape_only": "true"}))
+    assert sb.load_case(path).errors["roughness"] == pytest.approx(0.01)  # that of the height, not of its shape
 
 
 def test_the_probability_of_a_regime_is_that_of_its_speed():

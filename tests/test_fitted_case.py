@@ -121,6 +121,25 @@ def test_a_case_that_cannot_be_written_is_refused_before_the_fit(capsys, tmp_pat
     assert not picture.exists() and not (tmp_path / "fitted.toml").exists()
 
 
+def test_a_fitted_case_has_the_errors_of_the_fit_and_what_still_holds_of_the_correlations_it_had(capsys, tmp_path, subtests):
+    uncertain = {"load": '"20 N/m +- 3 %"', "radius": '"10 mm +- 2 %"'}
+    surface = {"surface": SURFACE | {"h_rms": '"1 um +- 9 %"', "beta_error": '"9 %"'}}
+    for name, contact, tables, tied, free in (
+        ("one body", *CASES["one body"][:2], {"load": {"radius": 0.5}}, ["modulus"]),
+        ("no height", NOTHING, surface, {"load": {"radius": 0.5, "beta": 0.4}}, ["roughness"]),
+        ("shape alone", NOTHING, surface, {"load": {"radius": 0.5, "roughness": 0.4}}, ["roughness", "beta"]),
+    ):
+        with subtests.test(name=name):
+            case, data, *_ = written(tmp_path, contact | uncertain, tables)
+            pairs = ", ".join(f"{first}.{other} = {each}" for first, others in tied.items() for other, each in others.items())
+            case.write_text(f"correlations = {{ {pairs} }}\n{case.read_text()}")
+            answer = call(capsys, "fit", data, case, "--free", *free, "--out", tmp_path / "fitted.toml", "--force")
+            assert answer.code == 0, answer.err
+            back, found = sb.load_case(tmp_path / "fitted.toml"), sb.fit(data, case, free=free, intervals=False).errors
+            assert {each: back.errors[each] for each in free} == pytest.approx({each: found[each] for each in free}, rel=1e-3)
+            assert back.errors.correlations == pytest.approx(found.correlations | {frozenset(uncertain): 0.5})
+
+
 def test_the_roughness_of_a_surface_scales_it_as_a_whole(capsys, tmp_path):
     contact, tables = PERSSON, {"surface": SURFACE}
     case, data, *_ = written(tmp_path, contact, tables)

@@ -219,7 +219,8 @@ def _split_errors(table: dict[str, Any], problems: list[str]) -> dict[str, float
             with noted(problems, where):
                 value, error = split_error(row.name, numbers[row.name], row.dimension, row.typical)
                 table[where] = numbers | {row.name: value}
-                errors |= {} if error is None else {name: error}
+                if error is not None and numbers.get("shape_only") is not True:  # the height of a shape is no input
+                    errors[name] = error
     surface = table.get("surface")
     given = surface if isinstance(surface, dict) else {}
     for key in ERRORS_OF_SURFACES.keys() & given.keys():

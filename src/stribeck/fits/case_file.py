@@ -146,7 +146,7 @@ class _Edits:
 def _edits(case: Case, contact: Contact, names: Sequence[str], of_names: StandardErrors, comments: Comments) -> _Edits:
     """Return what changes in the file of a case whose contact has other values of some inputs."""
     errors = StandardErrors({name: each for name, each in case.errors.items() if name not in names}) | of_names
-    edits, given = _Edits({}, {}, set()), case.tables.get("contact", {})
+    edits, given, fitted = _Edits({}, {}, set()), case.tables.get("contact", {}), set(names)
     from_table = [table for table in ("surface", "asperities") if table in case.tables]
     free_of_table = [name for name in INPUTS_OF_SURFACES if name in names] if from_table else []
     if free_of_table and not case.tables[from_table[0]].get("shape_only", False):
@@ -154,7 +154,8 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], of_names: Standar
         edits.at |= {(table, key): [] for key in ERRORS_OF_SURFACES}  # beta follows the height, or has its own in [contact]
         sheet = [key for key in ("ra", "rq") if key in given]
         if free_of_table == ["roughness"] and case.fit.scales_surface and not SPECTRUM & set(case.tables[table]):
-            lines = [*comments("roughness"), _entry("h_rms", contact.roughness, "length", errors.get("roughness"))]
+            errors = StandardErrors({name: each for name, each in errors.items() if name not in ERRORS_OF_SURFACES.values()})
+            lines = [*comments("roughness"), _entry("h_rms", contact.roughness, "length", of_names.get("roughness"))]
             if sheet:
                 edits.at |= {("contact", key): [] for key in sheet}
                 edits.added[table] = lines
@@ -181,10 +182,12 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], of_names: Standar
         if instead == ["youngs_modulus", "poisson_ratio"]:
             youngs = contact.modulus * (1 - _number(given["poisson_ratio"]) ** 2)
             edits.put(place, "youngs_modulus", [*lines[:-1], _entry("youngs_modulus", youngs, "pressure", errors.get(name))])
+            if has_error(given["poisson_ratio"]):  # the error of the fit is that of both
+                edits.put(place, "poisson_ratio", [_entry("poisson_ratio", _number(given["poisson_ratio"]), "number")])
         else:
             edits.put(place, key, lines, instead)
     kept = {frozenset((a, b)): each for a, others in case.tables.get("correlations", {}).items() for b, each in others.items()}
-    errors.correlations = {pair: each for pair, each in kept.items() if pair.isdisjoint(names)} | of_names.correlations
+    errors.correlations = {pair: each for pair, each in kept.items() if pair <= errors.keys() - fitted} | of_names.correlations
     edits.removed.add("correlations")
     edits.end = correlation_table(errors)
     if (
@@ -205,7 +208,8 @@ def _edited(text: str, edits: _Edits, folder: Path) -> list[str]:
         if head := _TABLE.fullmatch(line):
             lines += edits.added.get(table, [])
             table = head[1]
-        if table.split(".")[0] in edits.removed and line.strip():
+        whole = re.split(r"[.\s=]", (table or line).strip())[0].strip("'\"")  # a line before all tables may be one
+        if whole in edits.removed and line.strip():
             lines.append(f"# before the fit: {line.strip()}")
             continue
         key = re.match(r"\s*(\w+)\s*=", line)

@@ -49,15 +49,18 @@ class StandardErrors(dict[str, Any]):
     ) -> None:
         super().__init__(errors or {})
         self.correlations: dict[frozenset[str], float] = {}  # By the two inputs
+        if correlations is None:
+            correlations = getattr(errors, "nested", {})
         table = "a table, such as { roughness = -0.9 }"
-        for first, others in checked_kind("correlations", correlations or {}, Mapping, "a table").items():
+        for first, others in checked_kind("correlations", correlations, Mapping, "a table").items():
             for second, value in checked_kind(first, others, Mapping, table).items():
                 for name in (first, second):
                     if name not in self:
                         raise InputError(f"{show(name)} has no error that could be correlated; {known_names(name, self)}")
                 if isinstance(value, bool) or not isinstance(value, int | float) or not -1 < value < 1 or first == second:
                     raise InputError(f"{first} and {second} = {show(value)}; it must be between -1 and 1, of two inputs.")
-                self.correlations[frozenset((first, second))] = float(value)
+                if self.correlations.setdefault(frozenset((first, second)), float(value)) != value:
+                    raise InputError(f"{first} and {second} have two correlations; give one, in one order or the other.")
         try:
             np.linalg.cholesky(self.matrix)
         except np.linalg.LinAlgError:
@@ -69,6 +72,20 @@ class StandardErrors(dict[str, Any]):
         kept = {pair: each for pair, each in self.correlations.items() if pair.isdisjoint(other)}
         found.correlations = kept | getattr(other, "correlations", {})
         return found
+
+    def __ror__(self, other: Mapping[str, Any]) -> StandardErrors:  # type: ignore[override]
+        """Return others with these errors in their place."""
+        return StandardErrors(other) | self
+
+    def copy(self) -> StandardErrors:
+        """Return the same errors with their correlations.
+
+        Returns
+        -------
+        StandardErrors
+            Errors that may be changed without these.
+        """
+        return StandardErrors(self)
 
     @property
     def nested(self) -> dict[str, dict[str, float]]:
