@@ -514,3 +514,12 @@ def test_films_at_rest_have_the_errors_of_their_inputs_and_friction_that_of_aspe
     assert found["friction"].interval_68 == pytest.approx((0.7 * math.exp(-0.1), 0.7 * math.exp(0.1)), rel=0.02)
     assert found.to_si()["friction"] == pytest.approx(TRUE.boundary_friction)
     assert found["friction"].label == "friction coefficient, balanced" and found.to_dict()["definition"] == "balanced"
+    # Under an exponential law a film at rest passes through zero.
+    ball = sb.PointContact.from_groups(
+        sb.Groups(0.0, 0.3, 5e-4, geometry="point"), radius=5e-3, modulus=1e6, viscosity=0.01, alpha=2.0, beta=0.3,
+        boundary_friction=0.5,
+    )  # fmt: skip
+    ends = [ball.replace(beta=ball.beta * math.exp(end * math.sqrt(math.log(2)))) for end in (-1.96, 1.96)]
+    low, high = (float(sb.solve(each).central_gap) * each.hertz.indentation for each in ends)
+    assert low < 0 < high
+    assert sb.propagate(ball, {"beta": 1.0})["central_film_thickness"].interval_95 == pytest.approx((low, high), rel=0.05)

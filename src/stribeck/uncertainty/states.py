@@ -47,6 +47,8 @@ SEED = 20_261_126  # Of the choice of samples that are solved
 
 MIN_SHARE = 1e-290  # Value in place of a share that underflows
 
+AT_REST = 0.0  # The fluid's share of states at rest, which alone have none
+
 SHARES = ("contact_load_share", "fluid_load_share")
 
 VISCOUS, FLUID = 1, 2  # Places of viscous friction and the fluid's share among the observables of a state
@@ -173,8 +175,9 @@ class SampledStates:
         def values(draw: Array) -> Array:
             contact = self._moved(draw)
             state = self.neighbours.solution(contact.groups, contact)
-            films = [max(float(getattr(state, name)), MIN_SHARE) for name in self.logs]
-            return np.array([0.0, 0.0, MIN_SHARE, *np.log(films)])
+            numbers = {name: float(getattr(state, name)) for name in self.logs}
+            read = [each if name in FILM_NAMES else math.log(max(each, MIN_SHARE)) for name, each in numbers.items()]
+            return np.array([0.0, 0.0, AT_REST, *read])
 
         steps = np.diag([LOG_STEP / size_of(move) for move in self.moves])
         slopes = [(values(draw + step) - values(draw - step)) / (2 * step.sum()) for step in steps]
@@ -270,11 +273,13 @@ def _read(known: Sequence[tuple[Array, State]], places: Array, lengths: Array, l
 
 def _by_name(y: Array, sign: float, logs: Sequence[str]) -> dict[str, Array]:
     """Return load share, viscous friction and what is read as logarithms."""
-    share, viscous, _, *films = y.T
+    share, viscous, fluid, *films = y.T
+    at_rest = np.all(fluid == AT_REST)
     return {
         "contact_load_share": np.exp(share),
         "viscous": sign * np.exp(viscous) if sign else viscous,
-        **{name: np.exp(film) for name, film in zip(logs, films, strict=True)},
+        # Films at rest pass through zero.
+        **{name: film if at_rest and name in FILM_NAMES else np.exp(film) for name, film in zip(logs, films, strict=True)},
     }
 
 
