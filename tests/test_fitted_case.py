@@ -152,7 +152,8 @@ def test_the_roughness_of_a_surface_scales_it_as_a_whole(capsys, tmp_path):
 def test_the_preferred_model_of_several_files_is_a_case_that_solves_as_it_was_fitted(capsys, tmp_path, subtests):
     speeds = np.geomspace(3e-3, 0.3, 5)
     case, out = tmp_path / "case.toml", tmp_path / "elsewhere.toml"
-    case.write_text(case_text())
+    uncertain = {"load": '"20 N/m +- 3 %"', "radius": '"10 mm +- 2 %"', "roughness": '"1 um +- 9 %"', "beta": '"0.06 +- 5 %"'}
+    case.write_text(case_text(uncertain, correlations={"load": "{ radius = 0.5, beta = 0.4, roughness = 0.1 }"}))
     own = sb.load_case(case).contact
     for truth, options, said in (
         ({"cavitation": "exit"}, ("--models", "cavitation"), "the case of exit"),
@@ -166,7 +167,9 @@ def test_the_preferred_model_of_several_files_is_a_case_that_solves_as_it_was_fi
             tokens = (tmp_path / "a.csv", tmp_path / "b.csv", case, "--free", "roughness", *options)
             answer = call(capsys, "compare", *tokens, "--out", out, "--force")
             assert answer.code == 0 and said in answer.out, answer.err
-            back = sb.load_case(out).contact
+            back, errors = sb.load_case(out).contact, sb.load_case(out).errors
+            assert errors.keys() == uncertain.keys() and errors.correlations[frozenset(("load", "radius"))] == 0.5
+            assert frozenset(("load", "roughness")) not in errors.correlations  # the roughness is fitted
             solved = sb.solve_batch(back, speed=speeds).friction.total
             np.testing.assert_allclose(solved, friction, rtol=1e-3)
             assert "# Fitted by stribeck" in out.read_text() and " to a, b." in out.read_text()

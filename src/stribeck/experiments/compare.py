@@ -272,9 +272,13 @@ def write_preferred_case(comparison: Comparison, case: Case, path: PathLike, *, 
         if tables is None:
             continue
         with TemporaryDirectory(prefix="stribeck-") as folder:
-            changed = Path(folder) / "case.toml"
-            changed.write_text(toml_text(tables), encoding="utf-8")
-            write_fitted_case(each.fit, case if tables == case.tables else load_case(changed), path, force=force)
+            changed, of_case = Path(folder) / "case.toml", case
+            if tables != case.tables:  # of the correlations those are written whose errors the file still has
+                correlations = tables.pop("correlations", {})
+                changed.write_text(toml_text(tables), encoding="utf-8")
+                of_case = load_case(changed)
+                of_case = replace(of_case, tables=of_case.tables | {"correlations": correlations})
+            write_fitted_case(each.fit, of_case, path, force=force)
         return each.name
     names = " or ".join(each.name for each in comparison.candidates)
     raise InputError(f"{path} is not written: no case file can have {names}; write the criteria, as in --out laws.csv.")
@@ -289,7 +293,8 @@ def _tables_of(case: Case, contact: Contact) -> dict[str, Any] | None:
             return None
         tables = {name: table for name, table in tables.items() if name not in KEYS_OF_SURFACES}
         given = {key: value for key, value in tables["contact"].items() if key not in ("ra", "rq")}
-        tables["contact"] = given | {"law": law} | {name: getattr(contact, name) for name in INPUTS_OF_SURFACES}
+        new = {name: value for name in INPUTS_OF_SURFACES if (value := getattr(contact, name)) != getattr(own, name)}
+        tables["contact"] = {name: getattr(own, name) for name in INPUTS_OF_SURFACES} | given | {"law": law} | new
     if contact.fluid.name != own.fluid.name:
         if not SOURCES_OF_VISCOSITY.keys().isdisjoint(tables.get("fluid", {})):
             tables["contact"] = tables["contact"] | {"viscosity": contact.viscosity}
