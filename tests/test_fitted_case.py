@@ -97,7 +97,9 @@ def check_round_trip(capsys, folder, contact, tables, free):
     answer = call(capsys, "fit", data, case, "--free", *free, "--out", out, "--json")
     assert answer.code == 0, answer.err
     fitted = sb.load_case(out)
-    assert ("beta" in fitted.errors) <= ("beta" in free)  # else it follows the height
+    if "beta" in fitted.errors and "beta" not in free:  # it follows the height
+        assert fitted.errors["beta"] == fitted.errors["roughness"]
+        assert fitted.errors.correlations[frozenset(("roughness", "beta"))] > 0.999
     back = fitted.contact
     again = sb.solve_batch(back, speed=speeds, rtol=1e-5).friction.total
     np.testing.assert_allclose(again, friction, rtol=1e-4)
@@ -147,6 +149,16 @@ def test_the_roughness_of_a_surface_scales_it_as_a_whole(capsys, tmp_path):
     known = sb.load_case(case).contact
     assert found.contact.beta / known.beta == pytest.approx(found.contact.roughness / known.roughness, rel=1e-9)
     assert any("beta follows" in note for note in found.notes) and "beta" not in found.held
+
+
+def test_errors_of_a_fitted_surface_propagate_to_the_band_of_the_fit(tmp_path):
+    case, data, speeds, friction = written(tmp_path, NOTHING, {"surface": SURFACE})
+    rows = zip([*speeds, *speeds], [*friction * 1.02, *friction * 0.98], strict=True)
+    data.write_text("speed (m/s),friction\n" + "\n".join(f"{u},{mu}" for u, mu in rows))
+    found = sb.fit(data, case, free=["roughness", "modulus"], intervals=False)
+    (low,), (high,) = found.band(0, speeds[1:2])[1:]
+    spread = sb.propagate(found.contact.replace(speed=speeds[1]), found.errors, transitions=False)["friction"]
+    assert math.log(spread.interval_95[1] / spread.interval_95[0]) == pytest.approx(math.log(high / low), rel=0.1)
 
 
 def test_the_preferred_model_of_several_files_is_a_case_that_solves_as_it_was_fitted(capsys, tmp_path, subtests):

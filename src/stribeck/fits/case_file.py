@@ -154,8 +154,10 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], of_names: Standar
         edits.at |= {(table, key): [] for key in ERRORS_OF_SURFACES}  # beta follows the height, or has its own in [contact]
         sheet = [key for key in ("ra", "rq") if key in given]
         if free_of_table == ["roughness"] and case.fit.scales_surface and not SPECTRUM & set(case.tables[table]):
-            errors = StandardErrors({name: each for name, each in errors.items() if name not in ERRORS_OF_SURFACES.values()})
+            left = {name: each for name, each in errors.items() if name not in ERRORS_OF_SURFACES.values()}
+            errors = StandardErrors(left) | of_names
             lines = [*comments("roughness"), _entry("h_rms", contact.roughness, "length", of_names.get("roughness"))]
+            lines += [f'beta_error = "{100 * of_names["beta"]:.4g} %"'] if "beta" in of_names else []
             if sheet:
                 edits.at |= {("contact", key): [] for key in sheet}
                 edits.added[table] = lines
@@ -187,7 +189,8 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], of_names: Standar
         else:
             edits.put(place, key, lines, instead)
     kept = {frozenset((a, b)): each for a, others in case.tables.get("correlations", {}).items() for b, each in others.items()}
-    errors.correlations = {pair: each for pair, each in kept.items() if pair <= errors.keys() - fitted} | of_names.correlations
+    held = errors.keys() - fitted - of_names.keys()
+    errors.correlations = {pair: each for pair, each in kept.items() if pair <= held} | of_names.correlations
     edits.removed.add("correlations")
     edits.end = correlation_table(errors)
     if (

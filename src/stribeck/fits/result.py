@@ -17,7 +17,7 @@ from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.geometries import LINE
-from stribeck.contacts.inputs import InputTable
+from stribeck.contacts.inputs import InputTable, follows_surface
 from stribeck.files.datasets import Column, listed
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.fits.diagnosis import Quality, Unidentifiable
@@ -189,7 +189,12 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
             first: {second: float(self.correlation[own[first], own[second]]) for second in list(own)[k + 1 :]}
             for k, first in enumerate(own)
         }
-        return StandardErrors({name: float(relative[k]) for name, k in own.items()}, found)
+        errors = StandardErrors({name: float(relative[k]) for name, k in own.items()}, found)
+        for free in self._minimum.objective.model.free:
+            if free.also and free.name in errors and not follows_surface(self.contact, errors):
+                for name in free.also:
+                    errors = errors.with_tied(name, free.name)
+        return errors
 
     def band(self, curve: int, values: Array) -> tuple[Array, Array, Array]:
         """Return the fitted friction along a curve with its 95 % band.

@@ -17,6 +17,8 @@ __all__ = ["INTERVAL_95", "StandardErrors", "correlation_table", "errors_of_sour
 
 INTERVAL_95 = 1.959964  # Half of the 95 % interval of a normal distribution, in standard errors
 
+TIED = 1 - 1e-9  # Correlation of two numbers that are proportional, less what keeps their matrix positive definite
+
 
 class StandardErrors(dict[str, Any]):
     """Standard errors of inputs by name, those of a case or a fit, with their correlations.
@@ -86,6 +88,27 @@ class StandardErrors(dict[str, Any]):
             Errors that may be changed without these.
         """
         return StandardErrors(self)
+
+    def with_tied(self, name: str, to: str) -> StandardErrors:
+        """Return these errors with that of a number that is proportional to another.
+
+        Parameters
+        ----------
+        name : str
+            Input that has no error of its own.
+        to : str
+            Input that it is proportional to.
+
+        Returns
+        -------
+        StandardErrors
+            Errors with that of both.
+        """
+        found = self | {name: self[to]}
+        others = {each: r for pair, r in self.correlations.items() if to in pair for each in pair - {to}}
+        found.correlations |= {frozenset((name, each)): TIED * r for each, r in others.items()}
+        found.correlations[frozenset((name, to))] = TIED
+        return found
 
     @property
     def nested(self) -> dict[str, dict[str, float]]:
