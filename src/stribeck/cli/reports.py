@@ -284,7 +284,7 @@ def _strongest(found: Overview) -> list[str]:
     name = found.case.contact.INPUTS.quantities[most].label
     # Friction is the coefficient: a load may lower it and yet raise the force.
     force = f" (the coefficient; the force changes by {100 * (factor ** (1 + slope) - 1):+.2g} %)" if most == "load" else ""
-    return [f"Strongest lever: {name}; 10 % {way} lowers friction by about {-100 * (factor**slope - 1):.2g} %{force}."]
+    return [f"Strongest lever: {name}; 10 % {way} lowers friction by {-100 * (factor**slope - 1):.2g} %{force}."]
 
 
 def _way(factor: float) -> str:
