@@ -115,8 +115,9 @@ class StandardErrors(dict[str, Any]):
         """The correlations as they are given."""
         found: dict[str, dict[str, float]] = {}
         for pair, each in self.correlations.items():
-            first, second = sorted(pair, key=list(self).index)
-            found.setdefault(first, {})[second] = each
+            if pair <= self.keys():  # an error may have been taken out
+                first, second = sorted(pair, key=list(self).index)
+                found.setdefault(first, {})[second] = each
         return found
 
     @property
