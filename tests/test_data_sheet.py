@@ -229,6 +229,9 @@ def test_numbers_that_follow_from_one_hardness_are_correlated_and_what_no_correl
     assert not (case.errors | {"beta": 0.1}).correlations
     for same in ({"load": 0.1} | case.errors, case.errors.copy(), sb.results.StandardErrors(case.errors)):
         assert same.correlations == case.errors.correlations
+    same |= {"beta": 0.1}
+    assert not same.correlations
+    same = case.errors.copy()
     del same["beta"]
     assert not sb.propagate(case.contact, same, transitions=False).errors.correlations
     path.write_text("correlations = false\n" + case_text(own))

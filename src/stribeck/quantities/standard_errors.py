@@ -75,6 +75,8 @@ class StandardErrors(dict[str, Any]):
         found.correlations = kept | getattr(other, "correlations", {})
         return found
 
+    __ior__ = __or__  # type: ignore[assignment]
+
     def __ror__(self, other: Mapping[str, Any]) -> StandardErrors:  # type: ignore[override]
         """Return others with these errors in their place."""
         return StandardErrors(other) | self
