@@ -121,8 +121,8 @@ def test_every_number_of_every_result_has_a_unit_a_name_and_its_error_beside_it(
 def test_the_results_above_are_all_that_have_numbers(parts):
     kinds = {type(each) for each in parts.values()}
     names = {name for name in dir(sb.results) if getattr(sb.results, name) not in kinds}
-    # Words, and the parts of a film of a pressure, which its dataset holds.
-    assert names == {"Explanation", "FitOutcome", "Films", "Inlet"}
+    # Words, the parts of a film of a pressure, which its dataset holds, and errors of inputs, which are a dictionary.
+    assert names == {"Explanation", "FitOutcome", "Films", "Inlet", "StandardErrors"}
 
 
 def test_a_field_over_other_points_than_an_even_grid_is_not_drawn_and_keeps_its_places(results):
