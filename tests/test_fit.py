@@ -459,16 +459,12 @@ def test_the_band_is_the_spread_of_the_fitted_curve(fitted):
     assert low * high == pytest.approx(friction**2)
 
 
-def test_errors_of_a_fit_and_of_the_case_that_it_writes_give_its_band(tmp_path, capsys):
-    out = tmp_path / "fitted.toml"
-    assert call(capsys, "fit", MEASURED, CASE, "--out", out).code == 0
-    found, kept = sb.fit(MEASURED, CASE), sb.load_case(out).errors
+def test_errors_of_a_fit_give_its_band(fitted):
     speeds = np.array([5e-3, 1e-1])
-    for speed, friction, low, high in zip(speeds, *found.band(0, speeds), strict=True):
-        for errors in (found.errors, kept):
-            spread = sb.propagate(found.contact.replace(speed=speed), errors, transitions=False)["friction"]
-            assert spread.value == pytest.approx(friction, rel=1e-3)
-            assert math.log(spread.interval_95[1] / spread.interval_95[0]) == pytest.approx(math.log(high / low), rel=0.05)
+    for speed, friction, low, high in zip(speeds, *fitted.band(0, speeds), strict=True):
+        found = sb.propagate(fitted.contact.replace(speed=speed), fitted.errors, transitions=False)["friction"]
+        assert found.value == pytest.approx(friction, rel=1e-3)
+        assert math.log(found.interval_95[1] / found.interval_95[0]) == pytest.approx(math.log(high / low), rel=0.05)
 
 
 def test_the_command_writes_a_case_that_solves_a_figure_and_json_and_a_short_chain_of_the_posterior_says_so(tmp_path, capsys):
@@ -482,6 +478,10 @@ def test_the_command_writes_a_case_that_solves_a_figure_and_json_and_a_short_cha
     for name, value in values.items():
         assert getattr(case.contact, name) == pytest.approx(value, rel=1e-8)
     assert case.fit.free == ("boundary_friction", "roughness", "modulus")
+    order = [[*values].index(name) for name in case.errors]
+    assert case.errors.matrix == pytest.approx(np.array(found["correlation"])[np.ix_(order, order)], abs=1e-9)
+    for each in found["inputs"]:  # an error is wider than the standard error, as Student's interval is
+        assert 1 < math.sqrt(math.log1p(case.errors[each["name"]] ** 2)) / each["standard_error"] < 1.1
     assert sb.solve(case.contact).outcome.ok
     for each in found["inputs"]:
         low, high = each["interval_95"]
