@@ -17,6 +17,7 @@ from stribeck.cases.reading import load_case
 from stribeck.contacts.geometries import LineContact
 from stribeck.files.columns import Column, read_columns
 from stribeck.files.datasets import Column as DataColumn
+from stribeck.files.datasets import units_of
 from stribeck.files.results import Exported, Labelled
 from stribeck.files.writing import PathLike, path_of
 from stribeck.fits.columns import WORDS
@@ -122,7 +123,7 @@ class LoopFit(WithFittedInputs, Exported, Told, ByValue):
             "notes": list(self.notes),
         }
         rows = {name: np.asarray(values).tolist() for name, (_, values, _, _) in self._rows.items()}
-        return found | {"rows": rows, "units": {name: unit for name, (_, _, unit, _) in self._rows.items()}}
+        return found | {"rows": rows, "units": units_of(self._rows)}
 
     @property
     def _rows(self) -> dict[str, DataColumn]:

@@ -21,7 +21,7 @@ from stribeck.contacts.contact import Contact, model_words
 from stribeck.contacts.parts import PART_INPUTS
 from stribeck.curves.result import StribeckCurve
 from stribeck.files.writing import PathLike, atomic_write, check_writable, need_extra, path_of
-from stribeck.fits.measurements import CHANGE_READ, Measurements, read_measurements
+from stribeck.fits.measurements import Measurements, read_measurements, reading_of
 from stribeck.plot.curve import draw_report
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.keywords import answers_typos
@@ -98,8 +98,7 @@ def _sections(case: Case, found: Overview, checks: Checks, data: Measurements | 
     yield Section("Does the model apply?", verdicts, said + [f"Not checked: {each}" for each in checks.unchecked])
     if data:
         drawn = f"{len(data)} rows of {data.path or 'measured friction'}, drawn as read."
-        read = data.taken.replace(CHANGE_READ, ".")
-        yield Section("Data", (), [drawn, *filter(None, [read]), *_other_inputs(case.contact, data), *data.notes])
+        yield Section("Data", (), [drawn, *filter(None, [reading_of(data)]), *_other_inputs(case.contact, data), *data.notes])
     yield Section("Notes", (), [note for note in dict.fromkeys(found.notes) if not checks.covers(note, doubts=True)])
 
 

@@ -28,7 +28,7 @@ from stribeck.files.table_reading import read_table
 from stribeck.files.toml import parse_toml
 from stribeck.fits.columns import known_name
 from stribeck.fits.fit import fit
-from stribeck.fits.measurements import CHANGE_READ, Measurements, read_measurements
+from stribeck.fits.measurements import Measurements, read_measurements, reading_of
 from stribeck.fits.result import Fit
 from stribeck.fits.values import ABSCISSAS
 from stribeck.quantities.formats import format_si
@@ -92,7 +92,7 @@ def free_inputs(now: Inputs) -> list[tuple[str, str, bool]]:
 
 def reading(measured: Measured) -> str:
     """Return how a file was read and what was left out or assumed, in sentences, as the commands say it."""
-    return " ".join([measured.source.taken.replace(CHANGE_READ, "."), *measured.source.notes])
+    return " ".join([reading_of(measured.source), *measured.source.notes])
 
 
 def reading_for_fit(now: Inputs, measured: Measured) -> str:

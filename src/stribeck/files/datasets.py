@@ -63,6 +63,11 @@ def number_columns(numbers: Sequence[Number]) -> dict[str, Column]:
     return {name: ((), *stated) for each in numbers for name, stated in each.stated.items()}
 
 
+def units_of(columns: Mapping[str, Column]) -> dict[str, str]:
+    """Return the unit of each column."""
+    return {name: unit for name, (_, _, unit, _) in columns.items()}
+
+
 def listed(values: Sequence[Any]) -> Any:
     """Return values as an array for a dataset: numbers and truth values as such, text as objects, which NetCDF keeps."""
     text = any(isinstance(each, str) for each in values)

@@ -199,8 +199,8 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], of_names: Standar
         and {*INPUTS_OF_SURFACES, "modulus"} & set(names)
     ):
         # The numbers of a file in SI units are those of the contact that it was measured with.
-        columns = {"separation": contact.law.separation, "pressure": contact.law.pressure}
-        edits.at["table", "file"] = [f"{key} = {[float(each) for each in values]}" for key, values in columns.items()]
+        rows = {"separation": contact.law.separation, "pressure": contact.law.pressure}
+        edits.at["table", "file"] = [f"{key} = {[float(each) for each in values]}" for key, values in rows.items()]
     return edits
 
 

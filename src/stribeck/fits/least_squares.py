@@ -333,24 +333,25 @@ def settle(goal: Objective, start: Array, on_step: Callable[[], object] | None =
     """Return the minimum of q, with the scale of the noise found from its own residuals where it is not known."""
     found = minimise(goal, start, on_step=on_step)
     count = found.evaluations
-    for _ in range(MOST_ROUNDS):
-        if goal.errors is None:
-            break
-        sigma = np.hypot(goal.errors[0] * found.prediction.friction, goal.errors[1])
-        if np.allclose(sigma, found.objective.size, rtol=SETTLED, atol=0):
-            break
-        found = minimise(replace(goal, sigma=sigma), found.theta, on_step=on_step)
-    if goal.sigma is not None:
-        return found
-    if not goal.robust and not len(goal.priors[0]):
+    if goal.sigma is None and not goal.robust and not len(goal.priors[0]):
         return _scaled(found)  # a common factor on all residuals moves nothing
     for _ in range(MOST_ROUNDS):
-        noise = noise_of(found)
-        if noise == 0 or not math.isfinite(noise) or abs(math.log(noise)) < SETTLED:
-            break
-        goal = replace(goal, scale=goal.scale * noise)
-        found = minimise(goal, found.theta, on_step=on_step)
+        better = _goal_after(found)
+        if better is None:
+            return replace(found, evaluations=count)
+        found = minimise(better, found.theta, on_step=on_step)
         count += found.evaluations
-    else:
-        return replace(found, ended=False, evaluations=count)
-    return replace(found, evaluations=count)
+    return replace(found, ended=False, evaluations=count)
+
+
+def _goal_after(found: Minimum) -> Objective | None:
+    """Return the objective with the errors that a minimum shows, or None if it has these."""
+    goal = found.objective
+    if goal.errors is not None:
+        sigma = np.hypot(goal.errors[0] * found.prediction.friction, goal.errors[1])
+        return None if np.allclose(sigma, goal.size, rtol=SETTLED, atol=0) else replace(goal, sigma=sigma)
+    if goal.sigma is not None:
+        return None
+    noise = noise_of(found)
+    is_known = noise == 0 or not math.isfinite(noise) or abs(math.log(noise)) < SETTLED
+    return None if is_known else replace(goal, scale=goal.scale * noise)

@@ -36,7 +36,16 @@ from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import ByValue, Shown
 from stribeck.quantities.units import InputError, checked_kind, show
 
-__all__ = ["Data", "Measurements", "files_of", "measurements_of", "read_file", "read_measurements", "with_inputs_of_curves"]
+__all__ = [
+    "Data",
+    "Measurements",
+    "files_of",
+    "measurements_of",
+    "read_file",
+    "read_measurements",
+    "reading_of",
+    "with_inputs_of_curves",
+]
 
 # Around what each column was taken for
 READ, CHANGE_READ = "Read: ", ". To change this, name the columns in [fit.columns] of the case."
@@ -235,6 +244,11 @@ def _taken(columns: dict[str, list[str]], written: tuple[str, ...], made: tuple[
     ]
     parts = [*made, *parts, *([f"{show(run)} as run"] if run else [])]
     return f"{READ}{'; '.join(parts)}{CHANGE_READ}"
+
+
+def reading_of(data: Measurements) -> str:
+    """Return what each column of the files was taken for, without how to change it."""
+    return data.taken.replace(CHANGE_READ, ".")
 
 
 def _notes(

@@ -18,7 +18,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.geometries import LINE
 from stribeck.contacts.inputs import InputTable, follows_surface
-from stribeck.files.datasets import Column, listed
+from stribeck.files.datasets import Column, listed, units_of
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.fits.diagnosis import Quality, Unidentifiable
 from stribeck.fits.least_squares import Minimum
@@ -193,7 +193,7 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
         for free in self._minimum.objective.model.free:
             if free.also and free.name in errors and not follows_surface(self.contact, errors):
                 for name in free.also:
-                    errors = errors.with_tied(name, free.name)
+                    errors = errors.with_proportional(name, free.name)
         return errors
 
     def band(self, curve: int, values: Array) -> tuple[Array, Array, Array]:
@@ -275,7 +275,7 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
                 for name, contact in zip(self.data.curves, self.contacts, strict=True)
             ],
             "rows": {name: np.asarray(values).tolist() for name, (_, values, _, _) in self._rows.items()},
-            "units": units_of_inputs(self.contact) | {name: unit for name, (_, _, unit, _) in self._rows.items()},
+            "units": units_of_inputs(self.contact) | units_of(self._rows),
         }
 
     @property

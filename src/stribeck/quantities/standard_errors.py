@@ -17,7 +17,8 @@ __all__ = ["INTERVAL_95", "StandardErrors", "correlation_table", "errors_of_sour
 
 INTERVAL_95 = 1.959964  # Half of the 95 % interval of a normal distribution, in standard errors
 
-TIED = 1 - 1e-9  # Correlation of two numbers that are proportional, less what keeps their matrix positive definite
+# Of two numbers that are proportional, less what keeps the matrix positive definite
+PROPORTIONAL_CORRELATION = 1 - 1e-9
 
 
 class StandardErrors(dict[str, Any]):
@@ -91,7 +92,7 @@ class StandardErrors(dict[str, Any]):
         """
         return StandardErrors(self)
 
-    def with_tied(self, name: str, to: str) -> StandardErrors:
+    def with_proportional(self, name: str, to: str) -> StandardErrors:
         """Return these errors with that of a number that is proportional to another.
 
         Parameters
@@ -108,8 +109,8 @@ class StandardErrors(dict[str, Any]):
         """
         found = self | {name: self[to]}
         others = {each: r for pair, r in self.correlations.items() if to in pair for each in pair - {to}}
-        found.correlations |= {frozenset((name, each)): TIED * r for each, r in others.items()}
-        found.correlations[frozenset((name, to))] = TIED
+        found.correlations |= {frozenset((name, each)): PROPORTIONAL_CORRELATION * r for each, r in others.items()}
+        found.correlations[frozenset((name, to))] = PROPORTIONAL_CORRELATION
         return found
 
     @property

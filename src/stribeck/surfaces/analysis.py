@@ -15,7 +15,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.persson import GAMMA, GAMMA_INPUT, PerssonLaw, exponential_limit, persson_law
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
-from stribeck.files.datasets import number_columns
+from stribeck.files.datasets import number_columns, units_of
 from stribeck.files.results import Exported, Labelled
 from stribeck.quantities.formats import Number, format_si, plain_numbers
 from stribeck.quantities.lazy import cached_property
@@ -176,7 +176,7 @@ class Surface(Exported, Told):
     def to_dict(self) -> dict[str, Any]:
         """Return the numbers of :meth:`to_dataset` in SI units, nan where nothing was found, ready for JSON."""
         units = dict.fromkeys(("spacing", "size"), "m") | dict.fromkeys(("body_curvatures", "reliable_wavenumbers"), "m-1")
-        units |= {name: unit for name, (_, _, unit, _) in number_columns(self.numbers).items()}
+        units |= units_of(number_columns(self.numbers))
         return self._about | plain_numbers(self.numbers) | {"units": units, "notes": list(self.notes)}
 
     def _labelled(self) -> Labelled:

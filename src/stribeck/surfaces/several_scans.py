@@ -13,7 +13,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.persson import PerssonLaw, exponential_limit, persson_law
 from stribeck.contact_laws.spectrum import SelfAffine
-from stribeck.files.datasets import number_columns
+from stribeck.files.datasets import number_columns, units_of
 from stribeck.files.results import Exported, Labelled
 from stribeck.files.writing import atomic_write
 from stribeck.quantities.formats import Number, format_si, plain_numbers
@@ -127,8 +127,7 @@ class CombinedSurface(Exported, Told):
     def to_dict(self) -> dict[str, Any]:
         """Return the numbers of :meth:`to_dataset` in SI units, and what each scan says by itself, ready for JSON."""
         about = {"scans": [each.to_dict() for each in self.surfaces], "found": list(self.fit.found)}
-        units = {name: unit for name, (_, _, unit, _) in number_columns(self.numbers).items()}
-        told = {"relative_errors": self.errors, "units": units, "notes": list(self.notes)}
+        told = {"relative_errors": self.errors, "units": units_of(number_columns(self.numbers)), "notes": list(self.notes)}
         return about | plain_numbers(self.numbers) | told
 
     def _labelled(self) -> Labelled:

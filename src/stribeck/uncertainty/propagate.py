@@ -30,7 +30,7 @@ from stribeck.quantities.standard_errors import INTERVAL_95, StandardErrors
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.solver.solve_error import SolveError
 from stribeck.uncertainty.result import Spread, Uncertainty
-from stribeck.uncertainty.states import LOG_STEP, VISCOUS, SampledStates, films_of, moved, size_of
+from stribeck.uncertainty.states import LOG_STEP, VISCOUS, SampledStates, contact_after_move, films_of, size_of
 
 __all__ = ["STATE_RTOL", "Band", "errors_of_kept_inputs", "friction_band", "moves_of", "propagate"]
 
@@ -215,8 +215,10 @@ def moves_of(contact: Contact, sigmas: StandardErrors) -> dict[str, dict[str, fl
     """Return the independent moves of the logarithms of uncertain inputs, each by the first input that it moves."""
     names, steps = list(sigmas), np.array([*sigmas.values()])[:, None] * np.linalg.cholesky(sigmas.matrix)
     moves = {name: dict(zip(names[k:], steps[k:, k].tolist(), strict=True)) for k, name in enumerate(names)}
-    for move in moves.values() if follows_surface(contact, sigmas) else ():
-        move |= {"beta": move["roughness"]} if "roughness" in move else {}
+    if follows_surface(contact, sigmas):
+        for move in moves.values():
+            if "roughness" in move:
+                move["beta"] = move["roughness"]
     return {name: {each: step for each, step in move.items() if step != 0} for name, move in moves.items()}
 
 
@@ -236,7 +238,7 @@ def _exponents(solution: Any, inputs: Mapping[str, float], definition: Definitio
 def _power(contact: Contact, function: Any, move: Mapping[str, float]) -> list[float]:
     """Return the derivatives of logarithms of functions that are power laws along a move, zero where they are zero."""
     step = LOG_STEP / size_of(move)
-    pairs = zip(function(contact), function(moved(contact, move, step)), strict=True)
+    pairs = zip(function(contact), function(contact_after_move(contact, move, step)), strict=True)
     return [math.log(after / before) / step if before > 0 else 0.0 for before, after in pairs]
 
 
@@ -259,7 +261,7 @@ def _transitions(contact: Contact, sigmas: StandardErrors, definition: Definitio
 
     def changes(move: Mapping[str, float], steps: float) -> list[float]:
         """Return the changes of the logarithms, nan where a mark is lost."""
-        there, _ = marks(moved(contact, move, steps))
+        there, _ = marks(contact_after_move(contact, move, steps))
         return [math.log(there[mark] / value) if mark in there else math.nan for mark, value in start.items()]
 
     for move in moves_of(contact, sigmas).values():

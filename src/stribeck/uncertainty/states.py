@@ -30,7 +30,7 @@ from stribeck.quantities.units import InputError
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["LOG_STEP", "SampledStates", "State", "films_of", "moved", "size_of"]
+__all__ = ["LOG_STEP", "SampledStates", "State", "films_of", "contact_after_move", "size_of"]
 
 FILM_NAMES = ("central_gap", "minimum_gap", "flux_gap")
 
@@ -189,10 +189,10 @@ class SampledStates:
         for move, number in zip(self.moves, draw.tolist(), strict=True):
             for name, step in move.items():
                 logs[name] = logs.get(name, 0.0) + number * step
-        return moved(self.contact, logs)
+        return contact_after_move(self.contact, logs)
 
 
-def moved(contact: Contact, logs: Mapping[str, float], times: float = 1.0) -> Contact:
+def contact_after_move(contact: Contact, logs: Mapping[str, float], times: float = 1.0) -> Contact:
     """Return a contact whose inputs have moved by their logarithms."""
     return contact.replace(**{name: getattr(contact, name) * math.exp(times * log) for name, log in logs.items()})
 
