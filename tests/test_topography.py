@@ -45,6 +45,28 @@ def test_a_format_without_units_is_refused_until_they_are_given(tmp_path, height
     assert read.heights == pytest.approx(heights)
 
 
+def test_codes_for_no_height_are_missing_in_files_of_instruments_too(tmp_path, heights):
+    z = np.where(np.arange(heights.size).reshape(heights.shape) % 50 == 7, -9999.0, 1e6 * heights)
+    lines = [" ".join(f"{height:.6f}" for height in row) for row in z]
+    (tmp_path / "a.asc").write_text("\n".join(["ncols 36", "nrows 40", "NODATA_value -9999", *lines]))
+    read = read_topography(tmp_path / "a.asc", unit="um", spacing="1 um")
+    assert np.array_equal(np.isnan(read.heights.T), z == -9999)
+    assert read.notes == ("29 points hold -9999, a code for no height, and count as missing.",)
+
+
+def test_a_profile_in_a_format_of_maps_is_a_profile(tmp_path, heights):
+    write_x3p(tmp_path / "a.x3p", heights.reshape(-1, 1), 1e-6, 2e-6)
+    read = read_topography(tmp_path / "a.x3p")
+    assert read.spacing == pytest.approx((1e-6,))
+    assert read.heights == pytest.approx(heights.ravel(), abs=1e-15)
+
+
+def test_points_without_a_distance_are_named_with_their_file(tmp_path, heights):
+    write_x3p(tmp_path / "a.x3p", heights, 0.0, 2e-6)
+    with pytest.raises(sb.InputError, match=r"a\.x3p declares a scan of 0 x 7\.2e-05 m"):
+        read_topography(tmp_path / "a.x3p")
+
+
 def test_what_a_file_declares_cannot_be_overruled(tmp_path, heights):
     write_x3p(tmp_path / "a.x3p", heights, 1e-6, 1e-6)
     with pytest.raises(sb.InputError, match="declares its unit, m; leave out unit = 'um'"):

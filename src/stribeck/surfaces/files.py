@@ -15,7 +15,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.files.writing import MissingExtraError, path_of
 from stribeck.quantities.units import InputError, show, to_si
-from stribeck.surfaces.text import MAX_FILE_BYTES, TEXT_ENDINGS, Spacing, read_text, spacing_of
+from stribeck.surfaces.text import MAX_FILE_BYTES, TEXT_ENDINGS, Spacing, mark_codes, read_text, spacing_of
 from stribeck.surfaces.topography import Topography
 
 __all__ = ["read_topography"]
@@ -218,6 +218,11 @@ def _from_channel(
                 raise InputError(f"{path} declares its unit, {declared}; leave out {name} = {show(given)}.")
     if sizes is not None and any(size is None for size in sizes):
         sizes = None
+    elif sizes is not None and not all(0 < size < math.inf for size in sizes):
+        raise InputError(
+            f"{path} declares a scan of {' x '.join(f'{size:g}' for size in sizes)} {declared or unit}; export it again, or as "
+            "text with units."
+        )
     arguments: dict[str, Any] = {}
     if sizes is None:
         apart = spacing_of(spacing, len(shape))
@@ -231,11 +236,15 @@ def _from_channel(
     if declared is None:
         arguments["unit"] = unit
     topography = channel.topography(**arguments)
-    heights: Array = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
+    heights: Array = np.array(np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan))
+    notes = mark_codes(heights)
     factor = to_si(f"1 {height_unit}", "length", "height_unit") if height_unit else length
     steps = tuple(float(size) * length / n for size, n in zip(topography.physical_sizes, heights.shape, strict=True))
     if not topography.is_uniform:
         raise InputError(f"{path} holds a line with uneven steps; export it as text with two columns.")
+    if min(heights.shape) == 1:  # a profile in a format of maps
+        steps = steps[:1] if heights.shape[0] > 1 else steps[-1:]
+        heights = heights.ravel()
     resolution = topography.short_reliability_cutoff()
     source = (
         f"{path.name} ({format_name}, channel {channel.name!r})"
@@ -245,7 +254,11 @@ def _from_channel(
     if resolution is not None and not (math.isfinite(resolution) and resolution > 0):
         resolution = None
     return Topography(
-        heights * factor, steps, source=source, resolution=None if resolution is None else float(resolution) * length
+        heights * factor,
+        steps,
+        source=source,
+        resolution=None if resolution is None else float(resolution) * length,
+        notes=tuple(notes),
     )
 
 

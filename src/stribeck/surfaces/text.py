@@ -32,7 +32,7 @@ from stribeck.quantities.units import MAX_NUMBER, InputError, show, to_si
 from stribeck.surfaces.text_header import Header, header_of, unit_of
 from stribeck.surfaces.topography import MIN_POINTS, Topography, check_missing
 
-__all__ = ["TEXT_ENDINGS", "Spacing", "read_text", "spacing_of"]
+__all__ = ["TEXT_ENDINGS", "Spacing", "mark_codes", "read_text", "spacing_of"]
 
 Spacing = str | float | Sequence[str | float] | None
 """The distance between points as it is given: one for all axes, or one each."""
@@ -435,14 +435,20 @@ def _values(
     for code in np.unique(z[beyond & np.isfinite(z)]):
         notes.append(_missing_note(int((z == code).sum()), "hold", f"{code:g}, a code for no height,"))
     z[beyond] = np.nan
-    for code in sorted({*codes} | {sign * size for size in MISSING_CODES for sign in (-1, 1)}):
+    return values, notes + mark_codes(z, codes)
+
+
+def mark_codes(z: Array, declared: tuple[float, ...] = ()) -> list[str]:
+    """Put NaN in the place of numbers that stand for no height, and return a note on each."""
+    notes = []
+    for code in sorted({*declared} | {sign * size for size in MISSING_CODES for sign in (-1, 1)}):
         here = z == code
         rest = z[~here & ~np.isnan(z)]
         far = rest.size > 0 and np.abs(rest - code).min() > 3 * (rest.max() - rest.min())
-        if here.any() and (code in codes or far):
+        if here.any() and (code in declared or far):
             notes.append(_missing_note(int(here.sum()), "hold", f"{code:g}, a code for no height,"))
             z[here] = np.nan
-    return values, notes
+    return notes
 
 
 def _missing_note(count: int, verb: str, what: str) -> str:
