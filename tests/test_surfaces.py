@@ -434,6 +434,20 @@ def test_the_picture_shows_heights_spectrum_and_law(subtests):
             assert p[0] > exponential.get_data()[1][0]
 
 
+def test_jumps_between_the_lines_of_a_map_end_in_an_answer():
+    """As of an atomic force microscope: a fit between cut-offs was sought beyond the upper one."""
+    for seed in [2, 3]:
+        heights = analysed(seed, (80, 80)).topography.heights
+        jumps = 1e-5 * np.random.default_rng(seed).standard_normal(80)
+        assert any("anisotropic" in note for note in analyse(heights + jumps, spacing=STEP).notes)
+
+
+def test_a_line_of_any_length_has_a_spectrum(subtests):
+    for points in [67, 255]:  # its last ring holds no wave
+        with subtests.test(points=points):
+            assert power_spectrum(Topography(np.random.default_rng(3).standard_normal(points), (1e-6,))).density.min() > 0
+
+
 def test_a_steep_line_is_fitted_in_a_bounded_number_of_steps(monkeypatch):
     """Its exponent is at its bound, towards which one of the fits crept for 164 steps."""
     from scipy import optimize

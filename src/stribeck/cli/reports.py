@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import stribeck as sb
 from stribeck.contacts.contact import Contact, in_words, model_words
 from stribeck.contacts.friction import DEFINITIONS, Definition, regime_of
-from stribeck.quantities.formats import MIN_STATED_SHARE, figures, format_factor, format_number, format_si
+from stribeck.quantities.formats import MIN_STATED_SHARE, figures, format_factor, format_number, format_percent, format_si
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import table_lines
 from stribeck.quantities.units import InputError, show
@@ -284,7 +284,7 @@ def _strongest(found: Overview) -> list[str]:
     name = found.case.contact.INPUTS.quantities[most].label
     # Friction is the coefficient: a load may lower it and yet raise the force.
     force = f" (the coefficient; the force changes by {100 * (factor ** (1 + slope) - 1):+.2g} %)" if most == "load" else ""
-    return [f"Strongest lever: {name}; 10 % {way} lowers friction by {-100 * (factor**slope - 1):.2g} %{force}."]
+    return [f"Strongest lever: {name}; 10 % {way} lowers friction by {format_percent(1 - factor**slope)}{force}."]
 
 
 def _way(factor: float) -> str:

@@ -25,6 +25,7 @@ from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.least_squares import MAD, NEAR, Minimum
 from stribeck.fits.model import Prediction
 from stribeck.quantities.docstrings import Described
+from stribeck.quantities.formats import format_percent
 from stribeck.quantities.standard_errors import INTERVAL_95
 from stribeck.quantities.units import listed
 
@@ -151,24 +152,21 @@ def _reason(free: FreeInput, prediction: Prediction) -> str:
     asperities, fluid = (max(float(part.max()), error) for part in (prediction.contact_share, prediction.fluid_share))
     if free.name in SIZES:
         return (
-            f"asperities cause at most {_percent(asperities)} of the friction in any row, and a curve without a boundary "
-            "plateau cannot give it"
+            f"asperities cause at most {format_percent(asperities)} of the friction in any row, and a curve without a "
+            "boundary plateau cannot give it"
         )
     loads = prediction.load_share
     if free.name in ("roughness", "alpha") and float(loads.min()) > 0.9:
         return (
-            f"asperities carry at least {_percent(float(loads.min()))} of the load in every row: the data "
+            f"asperities carry at least {format_percent(float(loads.min()))} of the load in every row: the data "
             f"say little about the gap"
         )
     if free.name in ("roughness", "alpha", "beta") and asperities < 0.1:
-        return f"asperities cause at most {_percent(asperities)} of the friction in any row"
+        return f"asperities cause at most {format_percent(asperities)} of the friction in any row"
     if fluid < 0.1 and float(loads.min()) > 0.5:
-        return f"the fluid causes at most {_percent(fluid)} of the friction in any row, all of them near the boundary plateau"
+        most = f"at most {format_percent(fluid)} of the friction"
+        return f"the fluid causes {most} in any row, all of them near the boundary plateau"
     return "no row changes with it by more than the noise"
-
-
-def _percent(part: float) -> str:
-    return f"{100 * part:.2g} %"
 
 
 DRAWS = 4000

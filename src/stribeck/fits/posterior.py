@@ -17,6 +17,7 @@ from stribeck.files.writing import need_extra
 from stribeck.fits.least_squares import Minimum
 from stribeck.fits.result import Fit, FittedInput, format_value
 from stribeck.quantities.docstrings import Described
+from stribeck.quantities.formats import format_percent
 from stribeck.quantities.results import table_lines
 from stribeck.quantities.units import InputError
 
@@ -93,7 +94,7 @@ def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int],
         autocorrelation_time=time,
         converged=converged,
         message=f"The posterior {how} ({walkers} walkers, {steps} steps, autocorrelation time {time:.3g} steps, "
-        f"{100 * acceptance:.2g} % accepted).",
+        f"{format_percent(acceptance)} accepted).",
         inputs=fit.inputs,
     )
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.files.cells import rows_listed
+from stribeck.quantities.formats import format_percent
 
 __all__ = [
     "FEWEST",
@@ -231,7 +232,10 @@ def _errors(groups: Sequence[Sequence[_Step]]) -> tuple[list[float], str]:
     longest = max(map(len, series))
     if 2 * between >= len(groups) or longest == 1:
         scatter_of, single = ("repeats", "row") if longest == 1 else ("passes", "pass")
-        return found, f"the scatter of {scatter_of}, {100 * passes:.2g} % of a single {single}, became the error of each mean;"
+        return (
+            found,
+            f"the scatter of {scatter_of}, {format_percent(passes)} of a single {single}, became the error of each mean;",
+        )
     rows = float(np.mean([len(each) for each in series]))
     alone = math.sqrt(sum(float(each @ each) for each in series) / max(sum(len(each) - 1 for each in series), 1))
     typical = float(np.median(found))

@@ -26,7 +26,7 @@ def plot_surface(surface: Surface, *, ax: Axes | None = None, title: str = "", n
         Headline; the name of the file by default.
     """
     footer, said = [_caption(surface)], surface.notes if notes else ()
-    headline = title or surface.topography.source or "Surface"
+    headline = title or surface.topography.source
     figure, (heights, *others) = new_figure((14.0, 4.4), footer, said, title=headline, columns=3, right=0.7, ax=ax)
     _spread([heights, *others] if others else [])
     _draw_heights(figure, heights, surface)

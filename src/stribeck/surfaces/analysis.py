@@ -17,7 +17,7 @@ from stribeck.contact_laws.persson import GAMMA, GAMMA_INPUT, PerssonLaw, expone
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
 from stribeck.files.datasets import number_columns, units_of
 from stribeck.files.results import Exported, Labelled
-from stribeck.quantities.formats import Number, format_si, plain_numbers
+from stribeck.quantities.formats import Number, format_percent, format_si, plain_numbers
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.units import InputError, show, to_si
@@ -62,7 +62,7 @@ class Surface(Exported, Told):
     @property
     def source(self) -> str:
         """Where the heights come from."""
-        return self.topography.source or "heights in memory"
+        return self.topography.source
 
     @cached_property
     def limits(self) -> tuple[Estimate, Estimate]:
@@ -168,7 +168,7 @@ class Surface(Exported, Told):
         bounds = {"q0": "the longest wave is that of the scan", "q1": "the shortest is that of its reliable range"}
         limited = ", ".join(words for name, words in bounds.items() if name not in self.fit.errors)
         return Card(
-            f"{scan.source or 'Heights'}: {kind} of {points} points, {size}; tilt removed: {tilt}.",
+            f"{scan.source}: {kind} of {points} points, {size}; tilt removed: {tilt}.",
             table=[("quantity", "value", "error"), *((each.label, *each.texts) for each in self.numbers if each.label)],
             sentences=[*([f"Not of the surface: {limited}."] if limited else []), *self.notes],
         )
@@ -299,7 +299,7 @@ def _fit_notes(topography: Topography, body: Form, measured: MeasuredSpectrum, f
         notes.append(
             f"The spectrum goes on beyond {format_si(2 * math.pi / measured.highest, 'length')} ({measured.highest_reason}): "
             "slope, curvature and contact area would grow with finer sampling, and alpha would fall. beta would rise by up to "
-            f"{100 * (fit.beta_of_shorter_waves - 1):.2g} % if the power law goes on to 1 nm; the intervals allow for that."
+            f"{format_percent(fit.beta_of_shorter_waves - 1)} if the power law goes on to 1 nm; the intervals allow for that."
         )
     if "noise" in fit.found:
         notes.append("The spectrum flattens at short wavelengths as instrument noise does; the noise was subtracted.")

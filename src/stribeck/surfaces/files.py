@@ -220,8 +220,8 @@ def _from_channel(
         sizes = None
     elif sizes is not None and not all(0 < size < math.inf for size in sizes):
         raise InputError(
-            f"{path} declares a scan of {' x '.join(f'{size:g}' for size in sizes)} {declared or unit}; export it again, or as "
-            "text with units."
+            f"{path} declares a scan of {' x '.join(f'{size:g}' for size in sizes)} {declared or unit}; export it again, or "
+            "as text with units."
         )
     arguments: dict[str, Any] = {}
     if sizes is None:

@@ -115,6 +115,7 @@ def power_spectrum(
     order = np.argsort(radius, kind="stable")
     radius, power = radius[order], power[order]
     starts = np.unique(np.searchsorted(radius, edges[:-1]))
+    starts = starts[starts < radius.size]  # the last ring may hold no wave
     counts = np.diff(np.append(starts, radius.size))
     density = np.add.reduceat(power, starts) / counts
     wavenumber = np.exp(np.add.reduceat(np.log(radius), starts) / counts)

@@ -311,7 +311,7 @@ def _candidates(data: MeasuredSpectrum) -> list[_Trial | None]:
     # A power law is cut off where it goes over into a plateau; that plateau has a cut-off of its own.
     cut = _best(trials)
     if cut is not None:
-        lows = range(1, max(trial.low for trial in trials if trial is not None))
+        lows = range(1, min(max(trial.low for trial in trials if trial is not None), cut.high - 5))
         trials += [_fit_between_cut_offs(data, True, False, low, cut.high) for low in lows]
     noisy = _best(trials)
     if noisy is not None and noisy.high == n:

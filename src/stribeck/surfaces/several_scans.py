@@ -16,7 +16,7 @@ from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.files.datasets import number_columns, units_of
 from stribeck.files.results import Exported, Labelled
 from stribeck.files.writing import atomic_write
-from stribeck.quantities.formats import Number, format_si, plain_numbers
+from stribeck.quantities.formats import Number, format_percent, format_si, plain_numbers
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.standard_errors import INTERVAL_95
@@ -342,9 +342,9 @@ def surface_table(surface: Surface | CombinedSurface, *, has_errors: bool = True
 
     def share(name: str) -> str:
         values = {"h_rms": r.h_rms, "q0": r.q0, "roll_off": r.roll_off or r.q0, "q1": r.q1, "hurst": r.hurst}
-        return f"standard error {100 * errors[name] / values[name]:.2g} %" if name in errors else "end of the scan"
+        return f"standard error {format_percent(errors[name] / values[name])}" if name in errors else "end of the scan"
 
-    height_error = f" +- {100 * errors['h_rms'] / r.h_rms:.2g} %" if has_errors else ""
+    height_error = f" +- {format_percent(errors['h_rms'] / r.h_rms)}" if has_errors else ""
     named = [(name, each.relative_error) for name, each in (("alpha", alpha), ("beta", beta))]
     rows = [
         f"# From {surface.source}: "

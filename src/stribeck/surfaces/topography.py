@@ -50,33 +50,32 @@ class Topography:
 
     heights: Array
     spacing: tuple[float, ...]
-    source: str = ""
+    source: str = "heights in memory"
     resolution: float | None = None
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Check the heights and keep a read-only copy."""
-        where = f"{self.source}: " if self.source else ""
         try:
             z = np.array(self.heights, dtype=float)
         except (TypeError, ValueError, OverflowError):
-            raise InputError(f"{where}heights = {show(self.heights)} is no array of numbers.") from None
+            raise InputError(f"{self.source}: heights = {show(self.heights)} is no array of numbers.") from None
         steps = self.spacing if isinstance(self.spacing, tuple | list) else (self.spacing,) * z.ndim
         object.__setattr__(self, "spacing", tuple(positive("spacing", step) for step in steps))
         if z.ndim not in (1, 2) or len(self.spacing) != z.ndim:
             raise InputError(
-                f"{where}heights of shape {z.shape} with {len(self.spacing)} spacings are neither a profile nor a map."
+                f"{self.source}: heights of shape {z.shape} with {len(self.spacing)} spacings are neither a profile nor a map."
             )
         if min(z.shape) < MIN_POINTS[z.ndim]:
             kind = "a line" if z.ndim == 1 else "a map"
             raise InputError(
-                f"{where}{' x '.join(map(str, z.shape))} points are too few for a spectrum; "
+                f"{self.source}: {' x '.join(map(str, z.shape))} points are too few for a spectrum; "
                 f"{kind} needs {MIN_POINTS[z.ndim]} or more along each side."
             )
         z[~np.isfinite(z)] = np.nan
         check_missing(z, self.source)
         if not np.nanmax(z) > np.nanmin(z):
-            raise InputError(f"{where}all heights are the same; there is no roughness to evaluate.")
+            raise InputError(f"{self.source}: all heights are the same; there is no roughness to evaluate.")
         z.setflags(write=False)
         object.__setattr__(self, "heights", z)
 
@@ -199,7 +198,7 @@ def check_missing(heights: Array, source: str) -> None:
     share = float(np.isnan(heights).mean())
     if share > MAX_MISSING_SHARE:
         raise InputError(
-            f"{source + ': ' if source else ''}{100 * share:.0f} % of the points are missing, more than "
+            f"{source}: {100 * share:.0f} % of the points are missing, more than "
             f"{100 * MAX_MISSING_SHARE:.0f} %; crop the scan to the measured area."
         )
 
