@@ -250,6 +250,15 @@ def test_a_code_for_no_height_that_the_file_declares_is_missing(tmp_path):
     assert scan.missing == 2 and scan.notes == ("2 points hold 0.1234, a code for no height, and count as missing.",)
 
 
+def test_a_factor_of_heights_that_was_not_applied_is_said(tmp_path):
+    table = "x (um),z (nm)\n" + rows(X, LINE, form=("{:.3f}", "{:.4f}"))
+    for line in ["z scale: 0.001", "Bit2nm = 0.1", "Z factor = 0.01 um/digit"]:
+        scan = read(tmp_path, line + "\n" + table)
+        assert scan.notes == (f"Heights are as they stand in the file: '{line}' was not applied.",)
+    for line in ["Z scale: 500 nm", "Bit2nm = 1.0", "Zoom factor: 20"]:
+        assert read(tmp_path, line + "\n" + table).notes == ()
+
+
 def test_a_profile_without_names_may_number_its_points(tmp_path):
     scan = read(tmp_path, rows(range(400), X, LINE, form=("{}",)), unit="um")
     assert scan.heights == pytest.approx(LINE * 1e-6, abs=6e-11) and "numbers the points" in scan.notes[0]

@@ -360,6 +360,7 @@ def _table(path: Path) -> _Table:
         comma = not any("." in cell for row in cells for cell in row) or shown.decimal_comma(called)
     above = [*(line for _, line in found.above), ";".join(found.header)]
     header = header_of(path, (line.lstrip("#%;!*/ ") for line in above), "," if comma else ".")
+    notes += [f"Heights are as they stand in the file: {show(line)} was not applied." for line in header.scales]
     values, missing_notes = _values(path, cells, numbers, comma=comma, codes=header.codes)
     if not any(names) and values.shape[1] == 3 and _numbers_rows(values[:, 0]) and _is_even(values[:, 1]):
         notes.append("The first column numbers the points and was left out.")

@@ -41,6 +41,11 @@ _UNIT_LINE = re.compile(r"([^:=;,\t]*?)units?\b([^:=;,\t]*?)\s*[:=;,\t]+\s*([^\s
 _CODE_LINE = re.compile(
     rf"[^:=;,\t]*(?:no[ _-]?data|missing|invalid|bad|void|fehl)[^:=;,\t]*[:=;,\t\s]+\s*({_NUMBER})\W*", re.IGNORECASE
 )
+_SCALE_LINE = re.compile(
+    r"(?=[^:=;,\t]*(?:s[ck]al|fa[ck]tor|multipl|bit2nm))(?=[^:=;,\t]*(?:(?<![a-z])z(?![a-z])|zscale|height|höhe|data|value|2nm))"
+    rf"[^:=;,\t]+[:=;,\t]+\s*(?!1(?:[.,]0*)?\s*$){_NUMBER}(?![\d.,])(?!\s*{_LENGTH}\s*$)[^;,\t]*",
+    re.IGNORECASE,
+)
 _COUNT_LINE = re.compile(
     r"\W*(?:((?:samp(?:le)?s?|points|pixels)\s*(?:/|per)\s*line)|(?:number of |scan )?lines)\s*[:=;,\t]+\s*"
     r"(\d{1,3}(?:[,.' ]\d{3})+|\d+)[\s;,\t]*",
@@ -71,6 +76,7 @@ class Header:
     codes: tuple[float, ...] = ()  # Numbers that stand for no height
     samples: tuple[int, str] | None = None  # Heights in each line of a scan, and what says so
     lines: tuple[int, str] | None = None  # Lines of a scan, and what says so
+    scales: tuple[str, ...] = ()  # Lines that declare a factor of the heights
 
     def spacing(self, path: Path, shape: tuple[int, ...]) -> tuple[tuple[float, str] | None, ...]:
         """Return the distance between points along each axis and the line it is from, None where the header is silent."""
@@ -106,13 +112,15 @@ def header_of(path: Path, lines: Iterable[str], sign: str = ".") -> Header:
     samples = in_scan = aspect = None
     steps, sizes = dict[int, tuple[float, str]](), dict[int, tuple[float, str]]()
     heights: list[tuple[float, str]] = []
-    codes = []
+    codes, scales = [], []
     for raw in lines:
         line = re.sub(r'"\s*([,;\t])\s*"', r"\1", raw).strip('"').strip()
         code = _CODE_LINE.fullmatch(line)
         if code:
             codes.append(float(decimal_of(code[1], sign, path, show(raw.strip()))))
             continue
+        if _SCALE_LINE.fullmatch(line):
+            scales.append(raw.strip())
         ratio = _ASPECT_LINE.fullmatch(line)
         if ratio and ratio[1] != ratio[2]:
             aspect = raw.strip()
@@ -137,7 +145,7 @@ def header_of(path: Path, lines: Iterable[str], sign: str = ".") -> Header:
         raise InputError(
             f"{path}: {show(sizes[0][1])} gives one size and {show(aspect)} two; give both, as in 'Scan size: 40 um x 10 um'."
         )
-    return Header(lateral, vertical, steps, sizes, tuple(codes), samples, in_scan)
+    return Header(lateral, vertical, steps, sizes, tuple(codes), samples, in_scan, tuple(scales))
 
 
 def _normalised(text: str) -> str:
