@@ -4,6 +4,7 @@ import csv
 import io
 import os
 import re
+import resource
 import sys
 
 import netCDF4
@@ -276,6 +277,17 @@ def test_a_full_disk_is_not_called_a_lack_of_permission(dataset, tmp_path, monke
     monkeypatch.setattr(xr.Dataset, "to_netcdf", lambda self, path, **options: os.open("/no/such/file", os.O_RDONLY))
     with pytest.raises(sb.InputError, match=r"curve\.nc could not be written \(No such file or directory\)"):
         write_data(dataset, tmp_path / "curve.nc")
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_pdf_for_which_the_disk_has_no_room_is_refused_in_words(curve, tmp_path):
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (8192, limits[1]))
+    try:
+        with pytest.raises(sb.InputError, match=r"could not be written \(File too large\); it is unchanged"):
+            curve.plot(tmp_path / "curve.pdf")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert os.listdir(tmp_path) == []
 
 

@@ -3,6 +3,7 @@
 import functools
 import os
 import re
+import resource
 import shutil
 import signal
 import sqlite3
@@ -283,6 +284,16 @@ def test_a_place_that_is_no_store_is_refused_and_kept(subtests, tmp_path):
             assert what in sentence_of(sb.sweep, file, out) and what in sentence_of(sb.open_sweep, out)
     assert mine.read_text() == "mine" and sorted(os.listdir(tmp_path)) == before
     assert "cannot be written" in sentence_of(sb.sweep, file, "/proc/store")
+
+
+def test_of_a_store_for_which_the_disk_has_no_room_nothing_is_left(tmp_path):
+    file, limits = write(tmp_path, SMALL), resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1, limits[1]))
+    try:
+        said = sentence_of(sb.sweep, file, tmp_path / "store")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert "store cannot be written" in said and os.listdir(tmp_path) == [file.name]
 
 
 def test_an_empty_file_becomes_the_store(tmp_path):

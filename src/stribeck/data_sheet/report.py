@@ -233,7 +233,7 @@ def write_report(
     content = content_of(case, given, on_step)
     with atomic_write(path, REPORT_ENDINGS, force=force) as temporary:
         if target.suffix.lower() == ".pdf":
-            _write_pdf(content, temporary)
+            temporary.write_bytes(_pdf(content))
         else:
             temporary.write_text(page_of(content), encoding="utf-8")
     return content
@@ -262,13 +262,15 @@ def _svg(content: Content) -> str:
     return text.replace("<svg ", '<svg role="img" aria-label="Friction and film over the speed" ', 1)
 
 
-def _write_pdf(content: Content, path: Path) -> None:
+def _pdf(content: Content) -> bytes:
+    """Return the pages as PDF, which matplotlib writes with errors of its own on a full disk."""
     from matplotlib.backends.backend_pdf import PdfPages
     from matplotlib.figure import Figure
 
     lines = list(_lines(content))
     pages = [lines[i : i + PAGE_ROWS] for i in range(0, len(lines), PAGE_ROWS)]
-    with PdfPages(path) as book:
+    stream = io.BytesIO()
+    with PdfPages(stream) as book:
         for page in pages:
             figure = Figure(figsize=PAGE_INCH)
             for i, (text, strong) in enumerate(page):
@@ -277,6 +279,7 @@ def _write_pdf(content: Content, path: Path) -> None:
                 figure.text(*place, text, size=7, weight=weight, family="DejaVu Sans Mono", va="top", parse_math=False)
             book.savefig(figure)
         book.savefig(draw_report(content.curve, content.data, content.uncertainty))
+    return stream.getvalue()
 
 
 def _lines(content: Content) -> Iterator[tuple[str, bool]]:

@@ -6,6 +6,7 @@ Figures are made without pyplot, so that they need no display and change no sett
 from __future__ import annotations
 
 import inspect
+import io
 import textwrap
 from bisect import bisect_left
 from collections.abc import Callable, Sequence
@@ -75,7 +76,9 @@ def picture(also: str = "") -> Callable[[Callable[..., Figure]], Callable[..., F
             figure = function(result, **options)
             if path is not None:
                 with atomic_write(path, PICTURE_ENDINGS, force=force) as temporary:
-                    figure.savefig(temporary)
+                    stream = io.BytesIO()  # matplotlib's own errors would hide that of a full disk
+                    figure.savefig(stream, format=temporary.suffix[1:].lower())
+                    temporary.write_bytes(stream.getvalue())
             return figure
 
         own, added = inspect.signature(function), inspect.signature(draw, follow_wrapped=False).parameters

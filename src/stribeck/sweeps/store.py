@@ -144,7 +144,7 @@ def claimed_store(path: PathLike, design: SweepDesign) -> Iterator[Store]:
     place = _checked_place(path)
     if not place.absolute().parent.is_dir():
         raise InputError(f"{place} cannot be created because the folder {place.parent} does not exist; create it first.")
-    store = None
+    store, is_ours = None, not place.exists()
     try:
         with closing(sqlite3.connect(place.absolute(), isolation_level=None)) as db:
             _is_new(place, db)
@@ -170,6 +170,8 @@ def claimed_store(path: PathLike, design: SweepDesign) -> Iterator[Store]:
                 "Correct that and run the same sweep again to resume it."
             ) from None
         if isinstance(problem, sqlite3.OperationalError):
+            for beside in ("", "-wal", "-shm") if is_ours else ():
+                Path(f"{place}{beside}").unlink(missing_ok=True)
             raise InputError(f"{place} cannot be written ({reason_of(problem, place)}); choose another place.") from None
         raise InputError(_unreadable(place, problem)) from None
 
