@@ -265,6 +265,7 @@ def test_the_ending_chooses_the_format(subtests, solution, tmp_path):
         with subtests.test(ending=ending):
             solution.plot(tmp_path / f"profile{ending}")
             assert (tmp_path / f"profile{ending}").read_bytes().startswith(begins)
+    assert b"/Type3" not in (tmp_path / "profile.pdf").read_bytes()  # fonts that journals refuse
     with pytest.raises(sb.InputError, match=r"must end in \.png, \.svg or \.pdf\.$"):
         solution.plot(tmp_path / "profile.bmp")
 

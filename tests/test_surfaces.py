@@ -424,6 +424,7 @@ def test_the_picture_shows_heights_spectrum_and_law(subtests):
             figure = surface.plot(title="A surface")
             heights, spectrum, law = figure.axes[:3]
             assert heights.images or heights.lines
+            assert figure.legends[0].get_window_extent().y1 < law.get_window_extent().y0  # over no curve
             fit = next(line for line in spectrum.lines if line.get_label().startswith("fit"))
             q, density = fit.get_data()
             assert density == pytest.approx(surface.fit.at(q, is_line=surface.topography.is_line), rel=1e-9, abs=0)

@@ -19,6 +19,7 @@ def plot_comparison(comparison: Comparison, *, ax: Axes | None = None, title: st
     laws = comparison.candidates
     size = 8.0, 1.4 + 0.35 * len(laws)
     failed = [f"{name}: {why}" for name, why in comparison.failed.items()] if notes else []
+    inside = ax is not None
     figure, (ax,) = new_figure(size, [[comparison.sentence]], failed, title=title or "Which the data prefer", ax=ax, left=2.3)
     rows = np.arange(len(laws))
     ax.barh(rows, [each.difference for each in laws], height=0.6, color=[INK, *[GREY] * (len(laws) - 1)])
@@ -29,7 +30,7 @@ def plot_comparison(comparison: Comparison, *, ax: Axes | None = None, title: st
     style.label_rows(ax, [each.name for each in laws])
     ax.set_xlim(0.0, 1.25 * max(EXCLUDED_AICC, *(each.difference for each in laws)))
     ax.set_xlabel("difference of AICc")
-    ax.legend(frameon=False, fontsize=8, loc="lower right")
+    add_legend(figure, [ax], inside=inside)
     return figure
 
 
@@ -46,9 +47,10 @@ def plot_plan(plan: Plan, *, ax: Axes | None = None, title: str = "") -> Figure:
         fluid = format_si(viscosity, "viscosity").replace("*", "·")
         label = ", ".join([*[curve] * several, format_si(load, plan.load_dimension), fluid])
         ax.plot([e.speed for e in mine], [e.gain for e in mine], color=colours[i % 5], lw=1.8, label=label)
-    for i, each in enumerate(plan.runs, 1):
-        ax.axvline(each.speed, color=MARK, lw=1, ls=(0, (4, 2)))
-        ax.annotate(str(i), (each.speed, 1.0), xycoords=("data", "axes fraction"), color=MARK, ha="center", va="bottom")
+    for speed in dict.fromkeys(each.speed for each in plan.runs):
+        numbers = ", ".join(str(i) for i, each in enumerate(plan.runs, 1) if each.speed == speed)
+        ax.axvline(speed, color=MARK, lw=1, ls=(0, (4, 2)))
+        ax.annotate(numbers, (speed, 1.0), xycoords=("data", "axes fraction"), color=MARK, ha="center", va="bottom")
     make_logarithmic(ax, "x", np.array([each.speed for each in plan.scanned]))
     ax.set(xlabel="speed $U$ (m/s)", ylabel="gain of information")
     ax.set_ylim(bottom=0)

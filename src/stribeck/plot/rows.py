@@ -24,6 +24,7 @@ def plot_checks(checks: Checks, *, ax: Axes | None = None, title: str = "") -> F
     """Draw each check as its value over the limit up to which it is fine, or the limit over the value if it must be larger."""
     if not len(checks):
         raise InputError("no check could be made, so that there is nothing to draw.")
+    inside = ax is not None
     size, headline = (9.5, 1.2 + 0.28 * len(checks)), [[checks.headline]]
     figure, (ax,) = new_figure(size, headline, title=title or "Whether the model applies", ax=ax, left=2.2, right=2.3)
     ax.set_xscale("log")
@@ -38,7 +39,7 @@ def plot_checks(checks: Checks, *, ax: Axes | None = None, title: str = "") -> F
     ax.axvline(1.0, color=GREY, lw=0.9, ls=style.DASHED, zorder=0)
     style.label_rows(ax, [each.name for each in checks])
     ax.set(xlim=(1 / MAX_DRAWN_RATIO, MAX_DRAWN_RATIO), xlabel="part of its limit; beyond 1 is not fine")
-    ax.legend(frameon=False, fontsize=8, loc="lower right")
+    style.add_legend(figure, [ax], inside=inside)
     return figure
 
 
@@ -57,6 +58,7 @@ def plot_uncertainty(found: Uncertainty, *, ax: Axes | None = None, title: str =
     shown = [each for each in found.spreads if each.value > 0 and np.isfinite(each.value)]
     if not shown:
         raise InputError("no value of this state is positive, so that there is no interval to draw.")
+    inside = ax is not None
     size, footer = (8.5, 1.2 + 0.28 * len(shown)), [[f"Regime: {found.probabilities}."], *([line] for line in found.sources)]
     figure, (ax,) = new_figure(size, footer, title=title or "Uncertainty of a state", ax=ax, left=3.4)
     ends = np.clip([[*each.interval_95, *each.interval_68, each.median] for each in shown], 0.0, None)
@@ -69,5 +71,5 @@ def plot_uncertainty(found: Uncertainty, *, ax: Axes | None = None, title: str =
     style.label_rows(ax, [each.label for each in shown])
     style.make_logarithmic(ax, "x", ends)
     ax.set_xlabel("times the value for the inputs as given")
-    ax.legend(frameon=False, fontsize=8, loc="best")
+    style.add_legend(figure, [ax], inside=inside)
     return figure

@@ -75,9 +75,12 @@ def picture(also: str = "") -> Callable[[Callable[..., Figure]], Callable[..., F
         def draw(result: Any, path: PathLike | None = None, *, force: bool = False, **options: Any) -> Figure:
             figure = function(result, **options)
             if path is not None:
+                from matplotlib import rc_context
+
                 with atomic_write(path, PICTURE_ENDINGS, force=force) as temporary:
                     stream = io.BytesIO()  # matplotlib's own errors would hide that of a full disk
-                    figure.savefig(stream, format=temporary.suffix[1:].lower())
+                    with rc_context({"pdf.fonttype": 42}):  # journals refuse matplotlib's default, Type 3
+                        figure.savefig(stream, format=temporary.suffix[1:].lower())
                     temporary.write_bytes(stream.getvalue())
             return figure
 
@@ -181,7 +184,7 @@ def make_logarithmic(axes: Axes, which: str, values: Array) -> None:
         return
     axis.set_major_formatter("{x:g}")
     axis.set_minor_formatter("{x:g}")
-    if positive.max() > 10 * positive.min():
+    if positive.max() > 5 * positive.min():
         axis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
     else:
         axis.set_major_locator(MaxNLocator(4))

@@ -32,7 +32,8 @@ def plot_surface(surface: Surface, *, ax: Axes | None = None, title: str = "", n
     _draw_heights(figure, heights, surface)
     for axes, draw in zip(others, (_draw_spectrum, _draw_law), strict=False):
         draw(axes, surface)
-        axes.legend(fontsize=8, frameon=False, loc="lower left")
+    if others:
+        style.add_legend(figure, others, columns=6)
     return figure
 
 
@@ -63,7 +64,7 @@ def plot_combined_surface(surface: CombinedSurface, *, ax: Axes | None = None, t
         spectrum.plot(each.measured.wavenumber[good], each.measured.density[good], color=GREY, lw=0.6, label=label)
     for axes, draw in zip([spectrum, *others], (_draw_spectrum, _draw_law), strict=False):
         draw(axes, surface)
-        axes.legend(fontsize=8, frameon=False, loc="lower left")
+    style.add_legend(figure, [spectrum, *others], inside=not others)
     return figure
 
 
