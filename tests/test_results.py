@@ -1,5 +1,6 @@
 """What results have in common: they show themselves in a screen, are equal by value, draw into axes, have one friction."""
 
+import copy
 import json
 import pickle
 
@@ -114,9 +115,18 @@ def test_friction_means_the_same_on_state_and_curve(state, curve):
     assert state.friction(0.3)(definition="published").fluid == state.friction(definition="published").fluid
     np.testing.assert_array_equal(curve.friction, curve.friction.asperities + curve.friction.fluid)
     assert type(curve.friction * 2) is type(curve.friction[1:]) is np.ndarray and type(curve.friction.min()) is np.float64
-    assert pickle.loads(pickle.dumps(state.friction)) == state.friction
     with pytest.raises(sb.InputError, match="definition"):
         _ = curve.friction(definition="paper")
+
+
+def test_friction_that_is_copied_or_comes_from_another_process_has_its_parts_and_errors(state, curve):
+    for copied in (lambda each: pickle.loads(pickle.dumps(each)), copy.deepcopy, copy.copy):
+        for known in (curve.friction, state.friction, copied(curve).friction):
+            again = copied(known)
+            for part in ("total", "asperities", "fluid", "error"):
+                np.testing.assert_array_equal(getattr(again, part), getattr(known, part))
+            np.testing.assert_array_equal(again(beta=0.1), known(beta=0.1))
+    assert type(pickle.loads(pickle.dumps(curve.friction.copy()))) is np.ndarray
 
 
 def test_a_state_and_a_curve_are_in_si_units(state, curve):

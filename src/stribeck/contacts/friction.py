@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from copy import deepcopy
 from typing import Any, Literal, Self, cast
 
 import numpy as np
@@ -161,8 +162,9 @@ class Friction(Record, float):
         return f"Friction(asperities={self.asperities!r}, fluid={self.fluid!r}, total={total!r}, error={self.error!r})"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle the numbers."""
-        return type(self), (self.asperities, self.fluid, float(self), self.error, self.lower, self.upper)
+        """Pickle the numbers, and what they are called for."""
+        numbers = self.asperities, self.fluid, float(self), self.error, self.lower, self.upper
+        return type(self), (*numbers, getattr(self, "_other", None))
 
 
 class FrictionArray(np.ndarray[Any, np.dtype[np.float64]]):
@@ -203,8 +205,18 @@ class FrictionArray(np.ndarray[Any, np.dtype[np.float64]]):
         return np.asarray(array)[()]
 
     def __reduce__(self) -> Any:
-        """Pickle the total, which is a plain array then."""
-        return np.asarray(self).__reduce__()
+        """Pickle the numbers, and what they are called for; what numpy made of them is a plain array."""
+        if not vars(self):
+            return self.total.__reduce__()
+        return type(self), (self.asperities, self.fluid, self.total, self.error, self._other)
+
+    def __deepcopy__(self, memo: Any) -> Any:
+        """Copy the parts too."""
+        return type(self)(*deepcopy(self.__reduce__()[1], memo)) if vars(self) else self.total.copy()
+
+    def __copy__(self) -> Any:
+        """Copy the parts too."""
+        return self.__deepcopy__({})
 
 
 def friction_of(terms: Array, other: Callable[..., Any], is_number: bool = False) -> Friction | FrictionArray:
