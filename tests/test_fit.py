@@ -107,6 +107,19 @@ def test_an_end_of_an_interval_is_right_where_other_inputs_reach_their_bounds(tm
         assert math.sqrt(rise) == pytest.approx(t.ppf(0.975, len(data) - 3), abs=0.03)
 
 
+def test_an_end_of_an_interval_is_right_where_nothing_changes_beside_the_fit():
+    """A film alone, which only a high roughness pierces.  Solved states led the fit down to the bound, and its end too."""
+    from scipy.stats import t
+
+    data, start = noisy(4, low=0.06, high=1.0, rows=6), TRUE.replace(modulus="3 MPa", roughness="0.8 um")
+    found = sb.fit(data, start, free=["roughness", "modulus"])
+    assert found.outcome is sb.results.FitOutcome.CONVERGED and found.undetermined
+    end = found["roughness"].interval_95[1]
+    held = sb.fit(data, start.replace(roughness=end), free=["modulus"], intervals=False)
+    rise = sum(held.residuals**2 * held.noise**2 - found.residuals**2 * found.noise**2) / found.noise**2
+    assert math.sqrt(rise) == pytest.approx(t.ppf(0.975, len(data) - 2), abs=0.03)
+
+
 def test_intervals_of_nearly_linear_inputs_are_those_of_the_covariance(fitted):
     from scipy.stats import t
 

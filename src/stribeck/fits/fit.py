@@ -26,7 +26,7 @@ from stribeck.fits.case_file import case_of
 from stribeck.fits.diagnosis import judge_residuals, undetermined
 from stribeck.fits.free_inputs import FreeInput, free_inputs
 from stribeck.fits.intervals import Ends, covariance_of, ends_of
-from stribeck.fits.least_squares import Minimum, Objective, effective_parameters, minimise, objective, settle
+from stribeck.fits.least_squares import NEAR, Minimum, Objective, effective_parameters, minimise, objective, settle
 from stribeck.fits.measurements import Data, Measurements, measurements_of
 from stribeck.fits.model import FrictionModel
 from stribeck.fits.result import Fit, FittedInput, notes_of, outcome_of, unit_of
@@ -139,7 +139,13 @@ def fit(
     if not states.uses_atlas:
         return _result(fine, ends, covariance, quantiles, case, None)
     shift = fine.theta - found.theta
-    ends = [[Ends(e.low + d, e.high + d) for e in each] for each, d in zip(ends, shift.tolist(), strict=True)]
+    # In its own standard errors an end moves as far as the fit: where nothing changes beside the fit, this goes anywhere.
+    errors = np.nan_to_num(shift / np.sqrt(np.diag(covariance)))
+    parts = [[by / math.sqrt(q) for q in quantiles] for by in errors]
+    ends = [
+        [each.moved(theta, part) for each, part in zip(of_input, own, strict=True)]
+        for of_input, own, theta in zip(ends, parts, found.theta.tolist(), strict=True)
+    ]
     return _result(fine, ends, covariance, quantiles, case, shift)
 
 
@@ -234,8 +240,12 @@ def _brought_back(found: Minimum) -> Minimum:
     near = _nearest(found)
     if np.allclose(near, found.theta, rtol=0, atol=1e-9):
         return found
-    moved = minimise(found.objective, near, flat=FLAT)
-    return moved if moved.value < found.value + SAME else found
+    for _ in range(ROUNDS):
+        moved = minimise(found.objective, near, flat=FLAT, near=NEAR)
+        if moved.value < found.value + SAME and np.linalg.norm(moved.theta) < np.linalg.norm(found.theta):
+            return moved
+        near = (near + found.theta) / 2  # nothing changes near the fit, but it does at the case
+    return found
 
 
 def _best(goal: Objective, places: Array, definition: Definition) -> list[Array]:

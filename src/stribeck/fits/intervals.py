@@ -61,6 +61,10 @@ class Ends:
     low: float
     high: float
 
+    def moved(self, middle: float, part: float) -> Ends:
+        """Return the interval whose ends have moved by a part of their distance from the middle."""
+        return Ends(*(end + part * abs(end - middle) if math.isfinite(end) else end for end in (self.low, self.high)))
+
 
 def information_of(at: Minimum) -> tuple[Array, float, float]:
     """Return the information on the logarithms, the factor by which errors inflate its inverse, and the degrees of freedom."""
