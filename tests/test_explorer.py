@@ -237,7 +237,11 @@ CASES = [
         | {"modulus": None, "youngs_modulus": "5.5 MPa", "poisson_ratio": 0.49, "law": "greenwood-williamson", "alpha": 1},
     ),
     ({"asperities": ASPERITIES}, {"law": "greenwood-tripp"}),
-    ({"surface": SURFACE}, {}),
+    ({"surface": SURFACE | {"alpha_error": "5 %", "beta_error": "20 %"}}, {}),
+    (
+        {"surface": SURFACE | {"h_rms": "1 um +- 4 %"}, "correlations": {"roughness": {"modulus": -0.9}}},
+        {"law": "persson", "modulus": "3 MPa +- 8 %"},
+    ),
     ({"surface": WAVES}, {"law": "persson"}),
     ({"surface": {"spectrum": "spectrum.csv", "gamma": 0.42}}, {"law": "persson"}),
     ({"table": {"file": "law.csv"}}, ROUGH | {"law": "table"}),
@@ -292,7 +296,7 @@ def test_all_that_a_case_holds_goes_through_link_and_saved_case(subtests, tmp_pa
             same_contact(saved.contact, case.contact)
             for name in ("law", "curve", "rtol", "definition", "title", "notes", "fit", "facts"):
                 assert getattr(saved, name) == getattr(case, name), name
-            assert saved.errors == pytest.approx(case.errors)
+            assert saved.errors == pytest.approx(case.errors) and saved.errors.correlations == case.errors.correlations
             assert inputs.from_case(saved).tables == shown.tables
 
 

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, Literal, Self
 
 from stribeck.cases.case import Case
-from stribeck.cases.law import INPUTS_OF_SURFACES, self_contained
+from stribeck.cases.law import ERRORS_OF_SURFACES, INPUTS_OF_SURFACES, self_contained
 from stribeck.cases.model_parts import FILES, SOURCES_OF_VISCOSITY, fluid_table, gives_modulus, take_parts
 from stribeck.cases.reading import check_case
 from stribeck.contact_laws.scaled import NAMED_LAWS
@@ -105,8 +105,9 @@ class Inputs:
 
     @property
     def known(self) -> tuple[Any, ...]:
-        """What is known beside the contact: errors of inputs and facts."""
-        return tuple(self.case.errors.items()), tuple(self.case.facts.items())
+        """What is known beside the contact: errors of inputs with their correlations, and facts."""
+        errors = self.case.errors
+        return tuple(errors.items()), tuple(errors.correlations.items()), tuple(self.case.facts.items())
 
     @property
     def table(self) -> InputTable:
@@ -164,9 +165,7 @@ class Inputs:
                 kept = name in self.fields and self.fields[name].dimension == row.dimension
                 unit = self.units[name] if kept else _best_unit(value, row)
                 entry = exact_text(of * value, row.dimension, unit)
-            if name in errors and value:
-                entry = f"{entry} +- {100 * errors[name]!r} %"
-            contact["entrainment_speed" if of != 1.0 else name] = entry
+            contact["entrainment_speed" if of != 1.0 else name] = _with_error(entry, errors.get(name) if value else None)
         tables.pop("correlations", None)
         uncertain = StandardErrors(type(self).of(tables).case.errors)
         uncertain.correlations = {pair: each for pair, each in errors.correlations.items() if pair <= uncertain.keys()}
@@ -221,7 +220,8 @@ def from_case(case: Case) -> Inputs:
         own += [name for name in INPUTS_OF_SURFACES if all(stands_for.get(key, key) != name for key in contact)]
     if "surface" in tables:
         rough = {} if "wavenumber" in tables["surface"] else {"h_rms": exact_text(case.contact.roughness, "length", "um")}
-        tables["surface"] = rough | tables["surface"] | {"shape_only": True}
+        shape = {key: value for key, value in tables["surface"].items() if key not in ERRORS_OF_SURFACES}
+        tables["surface"] = rough | shape | {"shape_only": True}
     if not SOURCES_OF_VISCOSITY.keys().isdisjoint(tables.get("fluid", {})):
         tables["fluid"] = fluid_table(case.contact.fluid)
         tables["check"] = {**take_parts(case.tables).facts, **tables.get("check", {})}
@@ -234,8 +234,14 @@ def from_case(case: Case) -> Inputs:
         tables["profile"] |= {name: list(getattr(case.contact.profile, name)) for name in ("x", "z")}
     for name in own:
         row, value = case.contact.INPUTS.quantities[name], float(getattr(case.contact, name))
-        contact[name] = exact_text(value, row.dimension, _best_unit(value, row)) if row.units else value
+        entry = exact_text(value, row.dimension, _best_unit(value, row)) if row.units else value
+        contact[name] = _with_error(entry, case.errors.get(name))
     return Inputs.of(tables)
+
+
+def _with_error(entry: str | float, error: float | None) -> str | float:
+    """Return an entry of a case with the standard error over its value."""
+    return entry if error is None else f"{entry} +- {100 * error!r} %"
 
 
 def with_liquid(inputs: Inputs, liquid: Liquid) -> Inputs:
