@@ -186,6 +186,12 @@ def test_a_spreadsheet_is_read_like_text(tmp_path):
     found = sb.read_measurements(path)
     assert found.values == pytest.approx(np.array(SPEEDS) / 3, rel=1e-14) and found.friction.tolist() == list(FRICTIONS)
     assert found.rows[0] == 4
+    assert not any("hidden" in note for note in found.notes)
+    sheet.row_dimensions[5].hidden = sheet.row_dimensions[6].hidden = True  # as a filter does
+    book.save(path)
+    found = sb.read_measurements(path)
+    assert len(found.values) == len(SPEEDS)
+    assert "Rows hidden in the sheet count too: 5, 6; delete them if they shall not." in found.notes
     (tmp_path / "bad.xlsx").write_text("no zip")
     with pytest.raises(sb.InputError, match="cannot be read as a spreadsheet"):
         sb.read_measurements(tmp_path / "bad.xlsx")

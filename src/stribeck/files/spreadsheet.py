@@ -45,8 +45,8 @@ _QUOTED = re.compile(
 _CELL = re.compile(r"([A-Z]{1,3})([1-9][0-9]{0,6})")
 
 
-def sheets_of(path: Path, wanted: str | None = None) -> dict[str, list[tuple[int, str]]]:
-    """Return the sheets of a workbook that hold numbers."""
+def sheets_of(path: Path, wanted: str | None = None) -> dict[str, tuple[list[tuple[int, str]], set[int]]]:
+    """Return rows of the sheets of a workbook that hold numbers, and which of them are hidden."""
     content = content_of(path, MAX_WORKBOOK_BYTES, "a workbook")
     if len(content) > MAX_WORKBOOK_BYTES:
         raise InputError(f"{path} has more than {MAX_WORKBOOK_BYTES} bytes; keep the sheet with the measured rows.")
@@ -61,7 +61,9 @@ def sheets_of(path: Path, wanted: str | None = None) -> dict[str, list[tuple[int
     except Exception as problem:  # zip and XML raise errors of many kinds, and each means the same
         message = " ".join(str(problem).split())
         raise InputError(f"{path} cannot be read as a spreadsheet ({message}); export it as CSV.") from None
-    counts = {name: sum(has_number(cell) for _, line in lines for cell in line.split("\t")) for name, lines in sheets.items()}
+    counts = {
+        name: sum(has_number(cell) for _, line in lines for cell in line.split("\t")) for name, (lines, _) in sheets.items()
+    }
     if not any(counts.values()):
         which = "any of its sheets" if wanted is None else f"the sheet {show(wanted)}"
         raise InputError(f"{path} holds no numbers in {which}; formulas count only after a program has saved them.")
@@ -69,8 +71,10 @@ def sheets_of(path: Path, wanted: str | None = None) -> dict[str, list[tuple[int
     return {name: sheets[name] for name in ordered}
 
 
-def _sheets(path: Path, book: zipfile.ZipFile, wanted: str | None) -> Iterator[tuple[str, list[tuple[int, str]]]]:
-    """Yield name and rows of each sheet, or of the one that is wanted."""
+def _sheets(
+    path: Path, book: zipfile.ZipFile, wanted: str | None
+) -> Iterator[tuple[str, tuple[list[tuple[int, str]], set[int]]]]:
+    """Yield name, rows and hidden rows of each sheet, or of the one that is wanted."""
     targets: dict[str, str] = {}
     _parse(
         book,
@@ -94,7 +98,7 @@ def _sheets(path: Path, book: zipfile.ZipFile, wanted: str | None) -> Iterator[t
             rows = _Rows(path, strings, formats)
             part = posixpath.normpath(posixpath.join("/xl", target)).lstrip("/")
             _parse(book, part, {"c": rows.take_cell}, {"row": rows.begin_row})
-            yield name, rows.lines()
+            yield name, (rows.lines(), rows.hidden)
 
 
 def _formats(book: zipfile.ZipFile) -> list[str]:
@@ -176,9 +180,12 @@ class _Rows:
     widths: dict[int, int] = field(default_factory=dict)
     count: int = 0
     length: int = 0
+    hidden: set[int] = field(default_factory=set)  # By a filter, or by hand
 
     def begin_row(self, attributes: dict[str, str]) -> None:
         self.place = self._checked(int(attributes.get("r", self.place[0] + 1)), 0)
+        if attributes.get("hidden") in ("1", "true"):
+            self.hidden.add(self.place[0])
 
     def take_cell(self, attributes: dict[str, str], text: str) -> None:
         row, column = self.place

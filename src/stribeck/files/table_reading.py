@@ -84,8 +84,9 @@ def _read(
     """Return the cells of a file, with a header unless ``numbers_in`` tells rows, and the names of curves side by side."""
     filled_up = path.suffix.lower() in SPREADSHEET_ENDINGS and path.is_file()
     notes: tuple[str, ...] = ()
+    hidden = set[int]()
     if filled_up:
-        name, lines, others_of_book = _sheet(path, sheet, knows)
+        name, lines, others_of_book, hidden = _sheet(path, sheet, knows)
         if others_of_book:
             unread = ", ".join(map(show, others_of_book))
             notes = (f"Sheet {show(name)} read, not {unread}; sheet = ... in [fit] chooses another.",)
@@ -125,6 +126,9 @@ def _read(
         notes += (f"A table of {other.rows} rows under another header, in row {at}, left out{reads}.",)
     inside.update(i for each in same for i in range(each.first, each.below))
     taken = set(numbers)
+    if taken & hidden:
+        filtered = rows_listed(sorted(taken & hidden))
+        notes += (f"Rows hidden in the sheet count too: {filtered}; delete them if they shall not.",)
     left_out = [
         line.number
         for i, line in enumerate(lines[heading.below :], heading.below)
@@ -160,14 +164,15 @@ def _read(
     return table, heading.labels
 
 
-def _sheet(path: Path, wanted: str | None, knows: Callable[[str], bool]) -> tuple[str, list[Line], tuple[str, ...]]:
-    """Return name and lines of the sheet with most known names, or else most numbers, and the remaining sheets."""
-    sheets = {name: _check_size(path, filled) for name, filled in sheets_of(path, wanted).items()}
+def _sheet(path: Path, wanted: str | None, knows: Callable[[str], bool]) -> tuple[str, list[Line], tuple[str, ...], set[int]]:
+    """Return name and lines of the sheet with most known names, or else most numbers, other sheets, and hidden rows."""
+    book = sheets_of(path, wanted)
+    sheets = {name: _check_size(path, filled) for name, (filled, _) in book.items()}
     known = {
         name: max((min(each.known, 2) for each in headings_in(lines, knows)), default=0) for name, lines in sheets.items()
     }
     best = max(sheets, key=lambda name: known[name])
-    return best, sheets[best], tuple(name for name in sheets if name != best)
+    return best, sheets[best], tuple(name for name in sheets if name != best), book[best][1]
 
 
 def _lines_of_text(path: Path, sheet: str | None, numbers_in: Callable[[str], int] | None, largest: int) -> list[Line]:
