@@ -170,6 +170,23 @@ def test_curves_side_by_side_in_a_workbook_have_their_names_and_errors():
         assert found.error[own] == pytest.approx(0.05 * curve(SPEEDS), rel=1e-9)
 
 
+def test_curves_side_by_side_may_be_called_by_their_loads(written):
+    rows = "speed [mm/s];friction;speed [mm/s];friction\n1;0.6;1;0.5\n10;0.3;10;0.2\n100;0.05;100;0.04\n"
+    for labels in ["1 N;;2 N;", "1 N;;2 N", "dry;;wet;"]:
+        found = read(written(f"{labels}\n{rows}"))
+        assert found.curves == tuple(label for label in labels.split(";") if label)
+        assert not any("skipped" in note for note in found.notes)
+
+
+def test_a_load_in_a_line_that_is_not_used_is_named(written):
+    rows = "speed [mm/s];friction\n1;0.6\n10;0.3\n100;0.05\n"
+    for line, load in [("Load: 0.2 kp", 1.96133), ("Normalkraft: 0,2 kp", 1.96133), ("Load: 2 N", 2.0)]:
+        assert read(written(f"{line}\n{rows}")).inputs == ({"load": pytest.approx(load, rel=1e-12)},)
+    for what, geometry, unit in [("2", "point", "N"), ("2 N", "line", "N/m"), ("2 kN/m", "point", "N")]:
+        found = read(written(f"Load: {what}\n{rows}"), geometry)
+        assert found.inputs == ({},) and f"The load {what} of row 1 was not used: it is not in {unit} or alike." in found.notes
+
+
 def test_pairs_of_columns_of_a_digitizer_are_curves_once_their_meaning_is_said(written):
     name = "11_digitizer_pairs_of_columns.csv"
     assert "as in speed = 'X' and friction = 'Y', and the unit of the speed in [fit.units]" in refusal(name)

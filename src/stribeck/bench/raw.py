@@ -118,7 +118,7 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
     parts = [f"{show(names[0])} as {meaning.replace('_', ' ')}" for meaning, names in columns.items() if names[0] in written]
     if warm is not None:
         parts.append(f"{show(warm[1])} as temperature")
-    of_case, said = _said(table, asked, path.name, [*columns, *(["temperature"] if warm is not None else [])])
+    of_case, said, unused = _said(table, asked, path.name, [*columns, *(["temperature"] if warm is not None else [])])
     return Raw(
         path=table.path,
         numbers=np.array(table.numbers)[kept],
@@ -133,7 +133,7 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
         curves=curves,
         steps=tuple(labels[i] for i in kept) if labels else (),
         resolution=_resolution(table, friction_name, own) * float(np.median(np.abs(friction[there]))),
-        notes=tuple(notes),
+        notes=(*notes, *unused),
         taken="; ".join([*made, *parts, *of_case]),
         said=said,
     )
@@ -153,17 +153,19 @@ def _plausible(table: TextTable, name: str, friction: Array) -> tuple[TextTable,
     return emptied(table, name, out, which), np.where(out, np.nan, friction)
 
 
-def _said(table: TextTable, asked: FitSettings, name: str, columns: list[str]) -> tuple[list[str], dict[str, float]]:
-    """Return sentences and numbers of what file, name and case say of all rows; a load is a force, or per length."""
+def _said(
+    table: TextTable, asked: FitSettings, name: str, columns: list[str]
+) -> tuple[list[str], dict[str, float], list[str]]:
+    """Return sentences, numbers and notes on what file, name and case say of all rows; a load is a force, or per length."""
     try:
-        texts, found = inputs_said(table, replace(asked, geometry="point"), name, columns)
+        texts, found, unused = inputs_said(table, replace(asked, geometry="point"), name, columns)
     except InputError:
         if asked.geometry != "line":
             raise
-        texts, found = inputs_said(table, asked, name, columns)
+        texts, found, unused = inputs_said(table, asked, name, columns)
         if "load" in found:
             found["load_per_length"] = found.pop("load")
-    return texts, {key: value for key, value in found.items() if isinstance(value, float)}
+    return texts, {key: value for key, value in found.items() if isinstance(value, float)}, unused
 
 
 def _uses_coefficient(table: TextTable, settings: FitSettings) -> bool:

@@ -38,7 +38,7 @@ IN_WORDS = {"time": "seconds", "length": "metres"}  # SI units of columns that m
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
 
-_MASS = re.compile(r"(?:[mk]?g|gram|gr|lb)f?")
+_MASS = re.compile(r"(?:[mk]?g|gram|gr|lb)f?|k?p")  # also as kilopond
 _TURNS_PER_SECOND = re.compile(r"(?:U/s|1/s|Hz|s\^?[-−]1|s⁻¹)")
 
 _STATED = re.compile(

@@ -7,7 +7,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
-from stribeck.files.cells import FORMULA_ERROR, MISSING_CELLS, cells_of, has_number, is_missing, looks_like_units
+from stribeck.files.cells import (
+    FORMULA_ERROR,
+    MISSING_CELLS,
+    NUMBER_WITH_UNIT,
+    cells_of,
+    has_number,
+    is_missing,
+    looks_like_units,
+)
 
 # Separators of columns beside white space; the first of several in a line wins.
 COLUMN_SEPARATORS = ("\t", ";", ",", "|")
@@ -190,7 +198,11 @@ def _best(
         return None
     best = max(fitting, key=lambda each: (not _are_units(each.names), each.known, sum(map(bool, each.names)), -each.at))
     first = next((i for i in stack if i > best.at and best.holds_numbers(lines[i])), below)
-    return replace(best._with_others(lines, [i for i in stack if i < first]), below=first)
+    others = [i for i in stack if i < first]
+    above = best.at - 1  # labels such as 1 N;;2 N, which are numbers too
+    if above >= 0 and above not in others and all(map(NUMBER_WITH_UNIT.fullmatch, filter(None, best._padded(lines[above])))):
+        others.append(above)
+    return replace(best._with_others(lines, others), below=first)
 
 
 def _separators(line: Line) -> tuple[str, ...]:

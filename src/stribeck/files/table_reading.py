@@ -117,7 +117,7 @@ def _read(
         raise InputError(f"{path} has a header in row {number} and no rows of numbers below it{elsewhere}.")
     tables = [] if bare else [each for each in others if each.rows > 1]
     inside = {i for each in tables for i in range(each.first, each.end)}
-    skipped = sum(not line.comment and i not in inside for i, line in enumerate(lines[: heading.at]))
+    skipped = sum(not line.comment and i not in inside for i, line in enumerate(lines[: heading.first]))
     if skipped and not bare:
         notes += (f"{skipped} row{'s' * (skipped > 1)} of other text above the header skipped.",)
     for other in tables:

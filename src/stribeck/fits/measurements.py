@@ -168,7 +168,7 @@ def read_file(path: PathLike, settings: FitSettings) -> Measurements:
         averaged = average_repeats(rows, runs, settings.run_in == "keep")
         rows = averaged.rows
     names, of_row, differing = _curves(table.path, rows, settings, "curve" in columns or len(frictions) > 1)
-    said, of_file = inputs_said(table, settings, Path(path).name, list(columns))
+    said, of_file, unused = inputs_said(table, settings, Path(path).name, list(columns))
     differing = tuple({**of_file, **inputs} for inputs in differing)
     order = sorted(range(len(rows)), key=lambda i: (of_row[i], rows[i][2], rows[i][1]))
     found = Measurements(
@@ -186,6 +186,7 @@ def read_file(path: PathLike, settings: FitSettings) -> Measurements:
             *map(_idle, idle),
             *([f"{show(columns['error'][0])} is of the friction in each row."] if is_relative else []),
             *temperature_note(table),
+            *unused,
             *averaged.notes,
         ),
         taken=_taken(columns, written, (*made, *said), run),

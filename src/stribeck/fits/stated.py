@@ -25,13 +25,15 @@ NAMES = {
 }
 
 
-def inputs_said(table: TextTable, settings: FitSettings, name: str, columns: list[str]) -> tuple[list[str], dict[str, Any]]:
-    """Return sentences on what a file says of all of its rows, and these inputs in SI units.
+def inputs_said(
+    table: TextTable, settings: FitSettings, name: str, columns: list[str]
+) -> tuple[list[str], dict[str, Any], list[str]]:
+    """Return sentences on what a file says of all of its rows, these inputs in SI units, and notes on what was not used.
 
     Its name counts for more than its lines, and the case for more than its name.
     """
     path = table.path
-    lines = {key: each for key, each in _lines(table, settings).items() if key not in columns}
+    lines, unread = _lines(table, settings, [key for key in NAMES if key not in columns])
     if "preset" not in settings.liquid:
         lines.pop("temperature", None)  # by which nothing is known
     try:
@@ -51,7 +53,7 @@ def inputs_said(table: TextTable, settings: FitSettings, name: str, columns: lis
     found = inputs_of_file(path, given, settings.inputs, settings.liquid) if given else {}
     said = [f"{key} {text} by row {row}" for key, [(_, text, row), *_] in lines.items() if given.get(key) == text]
     said += [f"{key} {text} by the name of the file" for key, text in of_name.items() if given.get(key) == text]
-    return said, found
+    return said, found, [note for key, note in unread.items() if key not in given]
 
 
 def entries_of(settings: FitSettings, name: str) -> list[str]:
@@ -69,11 +71,14 @@ def _overruled(table: dict[str, Any], by: dict[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in table.items() if key not in without} | by
 
 
-def _lines(table: TextTable, settings: FitSettings) -> dict[str, list[tuple[float, str, int]]]:
-    """Return the different values that lines of text give of each input, also as text, with their rows."""
+def _lines(
+    table: TextTable, settings: FitSettings, keys: list[str]
+) -> tuple[dict[str, list[tuple[float, str, int]]], dict[str, str]]:
+    """Return the different values that lines of text give of inputs, also as text, with their rows; and what was not read."""
     found: dict[str, dict[float, tuple[float, str, int]]] = {}
-    for key, pattern in NAMES.items():
-        for number, _, value, unit in stated_in(table, pattern):
+    unread: dict[str, str] = {}
+    for key in keys:
+        for number, _, value, unit in stated_in(table, NAMES[key]):
             texts = [f"{value} {unit}"] if unit else []
             if unit and key != "temperature" and has_dimension(unit, settings.inputs.quantities[key].dimension):
                 kind = settings.inputs.quantities[key].dimension
@@ -82,7 +87,11 @@ def _lines(table: TextTable, settings: FitSettings) -> dict[str, list[tuple[floa
             values = [(each, text) for text in texts if (each := _value(key, text, settings)) is not None]
             for size, text in values[:1]:
                 found.setdefault(key, {}).setdefault(size, (size, text, number))
-    return {key: list(values.values()) for key, values in found.items()}
+            if not values and key != "temperature":
+                usual = DIMENSIONS[settings.inputs.quantities[key].dimension].unit
+                what = f"{value} {unit}".strip()
+                unread.setdefault(key, f"The {key} {what} of row {number} was not used: it is not in {usual} or alike.")
+    return {key: list(values.values()) for key, values in found.items()}, unread
 
 
 def _value(key: str, text: str, settings: FitSettings) -> float | None:
