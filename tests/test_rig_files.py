@@ -317,6 +317,15 @@ def test_text_of_any_encoding_of_windows_is_read(subtests, written):
             assert 1e6 * found.values == pytest.approx(SPEEDS)
 
 
+def test_headers_in_the_codes_of_east_asia_and_of_europe_are_read_as_they_are(subtests, written):
+    european = "Größe référence créée"  # pairs that are signs of East Asia in other codes
+    for encoding, name in [("cp932", "摩擦係数・ポリマー"), ("gbk", "摩擦系数"), ("cp1252", european)]:
+        with subtests.test(encoding=encoding):
+            text = PLAIN.replace("COF", name)
+            found = read(written(text.encode(encoding)), columns={"friction": name})
+            assert_on_curve(found)
+
+
 ROTATION = {
     "the case": (table("Speed [rpm];COF", speed, friction), {"track_radius": "9 mm"}),
     "RPM in capitals": (table("Rotational speed (RPM);COF", speed, friction), {"track_radius": "9 mm"}),

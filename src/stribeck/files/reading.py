@@ -5,11 +5,16 @@ from __future__ import annotations
 import codecs
 import errno
 import os
+import re
 import stat
+from contextlib import suppress
 from pathlib import Path
 
 from stribeck.files.writing import PathLike
 from stribeck.quantities.units import InputError
+
+_EAST_ASIAN = re.compile("[\u3040-\u30ff\u4e00-\u9fff]")
+_MISREAD = re.compile("[\uff61-\uff9f\ue000-\uf8ff]")  # Narrow katakana and private signs, as which Japanese codes read others
 
 FILE_KINDS = {stat.S_IFIFO: "a pipe", stat.S_IFCHR: "a device", stat.S_IFBLK: "a device", stat.S_IFSOCK: "a socket"}
 
@@ -49,7 +54,7 @@ def content_of(path: Path, largest: int, kind: str) -> bytes:
 
 
 def text_of(path: Path, largest: int, advice: str, kind: str) -> str:
-    """Return the text of a file of at most ``largest`` bytes in UTF-8, UTF-16 or Windows-1252; ``kind`` is what to give."""
+    """Return the text of a file of at most ``largest`` bytes, in a code that spreadsheets write; ``kind`` is what to give."""
     content = content_of(path, largest, kind)
     if len(content) > largest:
         raise InputError(f"{path} has more than {largest} bytes; {advice}.")
@@ -64,4 +69,11 @@ def text_of(path: Path, largest: int, advice: str, kind: str) -> str:
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
-        return content.decode("cp1252", errors="replace")  # what spreadsheets in Europe write
+        pass
+    # In Europe letters beyond ASCII stand alone or in pairs; signs of Chinese and Japanese are pairs beside pairs.
+    for encoding in ("cp932", "gbk") if re.search(rb"[\x80-\xff]{3}", content) else ():
+        with suppress(UnicodeDecodeError):
+            text = content.decode(encoding)
+            if len(_EAST_ASIAN.findall(text)) > len(_MISREAD.findall(text)):
+                return text
+    return content.decode("cp1252", errors="replace")
