@@ -280,6 +280,25 @@ def test_with_perssons_law_beta_follows_the_roughness():
 
 
 @pytest.mark.quick
+def test_an_error_of_the_height_of_a_surface_is_one_of_beta_too_under_any_law(tmp_path):
+    def case_of(height):
+        own = dict.fromkeys(("alpha", "beta", "roughness")) | {"modulus": '"3 MPa +- 2 %"', "speed": '"20 mm/s"'}
+        shape = {"h_rms": f'"{height}"', "hurst": 0.8, "longest_wavelength": '"30 um"', "shortest_wavelength": '"1 um"'}
+        tied = {"correlations": {"modulus": "{ roughness = -0.6 }"}} if "+-" in height else {}
+        (tmp_path / "case.toml").write_text(case_text(own, surface=shape, **tied))
+        return sb.load_case(tmp_path / "case.toml")
+
+    case = case_of("1 um +- 2 %")
+    stiff = case.contact.replace(modulus=case.contact.modulus * 1.02)
+    contacts = (case_of("1.02 um").contact, stiff, case.contact)
+    higher, stiffer, here = (math.log(sb.solve(each).friction().total) for each in contacts)
+    of_height, of_modulus = higher - here, stiffer - here
+    expected = of_height**2 + of_modulus**2 - 1.2 * of_height * of_modulus
+    low, high = sb.propagate(case.contact, case.errors, transitions=False)["friction"].interval_68
+    assert (math.log(high / low) / 2) ** 2 == pytest.approx(expected, rel=0.05)
+
+
+@pytest.mark.quick
 def test_errors_that_say_nothing_are_refused():
     for errors, sentence in (
         ({"rough": 0.1}, "no input of a contact"),

@@ -26,7 +26,15 @@ from stribeck.contacts.contact import IN_PLACE_OF
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.geometries import CONTACTS, INPUT_TABLES
 from stribeck.contacts.groups import Geometry, check_geometry
-from stribeck.contacts.inputs import InputTable, ReadInputs, check_motion, read_inputs, typical_error_text, typical_errors
+from stribeck.contacts.inputs import (
+    InputTable,
+    ReadInputs,
+    check_motion,
+    follows_surface,
+    read_inputs,
+    typical_error_text,
+    typical_errors,
+)
 from stribeck.contacts.parts import PART_INPUTS
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import path_of
@@ -124,16 +132,19 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     if "alpha" in found.errors and hasattr(contact.law, "fixed_alpha"):
         _refuse(path, [f"[contact] alpha has no error under law = {show(law)}: it is {contact.alpha:g} by definition."])
     known = errors_of_sources(found.errors) | errors
+    scales_surface = "surface" in tables and not tables["surface"].get("shape_only", False)
+    follows = scales_surface and "roughness" in known and "beta" not in known and not follows_surface(contact, known)
     try:
+        if follows:
+            known = known.with_proportional("beta", "roughness")
         stated = StandardErrors(known, correlations)
         stated.correlations = known.correlations | stated.correlations
+        if follows:  # what the height goes with, beta does
+            stated = stated.with_proportional("beta", "roughness")
         known = StandardErrors(known, stated.nested)
     except InputError as problem:
         _refuse(path, [f"[correlations] {problem}"])
-    of_contact: dict[str, Any] = {
-        "slide_to_roll": FitSettings.of(contact).slide_to_roll,
-        "scales_surface": "surface" in tables and not tables["surface"].get("shape_only", False),
-    }
+    of_contact: dict[str, Any] = {"slide_to_roll": FitSettings.of(contact).slide_to_roll, "scales_surface": scales_surface}
     typical = typical_errors(contact, known) if checked["uncertainty"] == "typical" else {}
     return Case(
         path=path,

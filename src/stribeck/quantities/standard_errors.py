@@ -98,7 +98,7 @@ class StandardErrors(dict[str, Any]):
         Parameters
         ----------
         name : str
-            Input that has no error of its own.
+            Input that has no error of its own, else this stands in its place.
         to : str
             Input that it is proportional to.
 
@@ -108,7 +108,7 @@ class StandardErrors(dict[str, Any]):
             Errors with that of both.
         """
         found = self | {name: self[to]}
-        others = {each: r for pair, r in self.correlations.items() if to in pair for each in pair - {to}}
+        others = {each: r for pair, r in self.correlations.items() if to in pair for each in pair - {name, to}}
         found.correlations |= {frozenset((name, each)): PROPORTIONAL_CORRELATION * r for each, r in others.items()}
         found.correlations[frozenset((name, to))] = PROPORTIONAL_CORRELATION
         return found
@@ -119,7 +119,7 @@ class StandardErrors(dict[str, Any]):
         found: dict[str, dict[str, float]] = {}
         for pair, each in self.correlations.items():
             if pair <= self.keys():  # an error may have been taken out
-                first, second = sorted(pair, key=list(self).index)
+                first, second = sorted(pair)
                 found.setdefault(first, {})[second] = each
         return found
 

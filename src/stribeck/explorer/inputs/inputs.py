@@ -222,6 +222,7 @@ def from_case(case: Case) -> Inputs:
         rough = {} if "wavenumber" in tables["surface"] else {"h_rms": exact_text(case.contact.roughness, "length", "um")}
         shape = {key: value for key, value in tables["surface"].items() if key not in ERRORS_OF_SURFACES}
         tables["surface"] = rough | shape | {"shape_only": True}
+        tables["correlations"] = case.errors.nested  # with those of beta, which follows the height of a whole surface alone
     if not SOURCES_OF_VISCOSITY.keys().isdisjoint(tables.get("fluid", {})):
         tables["fluid"] = fluid_table(case.contact.fluid)
         tables["check"] = {**take_parts(case.tables).facts, **tables.get("check", {})}
