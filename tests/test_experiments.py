@@ -195,6 +195,9 @@ def test_too_few_rows_to_judge_the_fitted_numbers_are_refused():
         sb.InputError, match=r"^nothing could be fitted: 5 rows .*; give 6 rows or more, or free fewer inputs\.$"
     ):
         sb.compare(rows, TRUE, models={"one": {}, "other": {"beta": 0.05}}, free=(*free, "beta"))
+    for wrong in ({"laws": ["exponential"]}, {"models": ["one"]}, {"models": {"one": 3}}):
+        with pytest.raises(sb.InputError, match=r"it must be a dictionary"):
+            sb.compare(rows, TRUE, **wrong)
 
 
 def test_an_outlier_does_not_steer_the_comparison_of_robust_fits(tmp_path):

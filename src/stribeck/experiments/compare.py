@@ -33,7 +33,7 @@ from stribeck.fluids.rheology.rate_laws import Carreau
 from stribeck.quantities.formats import format_percent
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import Card, Told
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.solver.solve_error import SolveError
 
 # Caveats of a comparison.
@@ -204,7 +204,12 @@ def compare(
 def _of_laws(contact: Contact, laws: Mapping[str, AsperityLaw | None] | None) -> dict[str, dict[str, Any]]:
     """Return models that differ in their contact law, with beta free in each."""
     found: dict[str, dict[str, Any]] = {}
-    for name, law in (_laws(contact) if laws is None else laws).items():
+    given = (
+        _laws(contact)
+        if laws is None
+        else checked_kind("laws", laws, Mapping, "a dictionary, as {'summits': GreenwoodTripp()}")
+    )
+    for name, law in given.items():
         in_heights = isinstance(law, GreenwoodWilliamson | GreenwoodTripp)
         found[name] = {"law": law, "free": ("beta",), **({"alpha": 1.0} if in_heights else {})}
     return found
@@ -213,6 +218,8 @@ def _of_laws(contact: Contact, laws: Mapping[str, AsperityLaw | None] | None) ->
 def _models(models: str | Mapping[str, Mapping[str, Any]], contact: Contact, rows: Measurements) -> dict[str, Any]:
     """Return the models that are compared: those given, or those of a name."""
     if not isinstance(models, str):
+        for each in (models, *(models.values() if isinstance(models, Mapping) else ())):
+            checked_kind("models", each, Mapping, "a dictionary of dictionaries, as {'a name': {'beta': 0.05}}")
         return dict(models)
     if models not in MODEL_KINDS:
         known = " or ".join(map(repr, MODEL_KINDS))
