@@ -217,6 +217,7 @@ def test_numbers_that_follow_from_one_hardness_are_correlated_and_what_no_correl
         ({"alpha": "{ radius = 0.5 }"}, "'radius' has no error that could be correlated; known are "),
         ({"alpha": "{ beta = 1.0 }"}, "alpha and beta = 1.0; it must be between -1 and 1"),
         ({"alpha": "0.5"}, "alpha = 0.5; it must be a table"),
+        ({"alhpa": "{}"}, "'alhpa' has no error that could be correlated"),
         ({"alpha": "{ beta = 0.9, roughness = -0.9 }", "beta": "{ roughness = 0.9 }"}, "contradict one another"),
         ({"alpha": "{ beta = 0.9 }", "beta": "{ alpha = -0.9 }"}, "beta and alpha have two correlations"),
     ):
@@ -226,6 +227,7 @@ def test_numbers_that_follow_from_one_hardness_are_correlated_and_what_no_correl
     path.write_text(case_text(own, correlations={"alpha": "{ beta = 0.9 }"}))
     case = sb.load_case(path)
     assert (case.errors | {"load": 0.1}).correlations == case.errors.correlations
+    assert case.errors == dict(case.errors) and case.errors != sb.results.StandardErrors(dict(case.errors))
     assert not (case.errors | {"beta": 0.1}).correlations
     for same in ({"load": 0.1} | case.errors, case.errors.copy(), sb.results.StandardErrors(case.errors)):
         assert same.correlations == case.errors.correlations

@@ -56,10 +56,10 @@ class StandardErrors(dict[str, Any]):
             correlations = getattr(errors, "nested", {})
         table = "a table, such as { roughness = -0.9 }"
         for first, others in checked_kind("correlations", correlations, Mapping, "a table").items():
-            for second, value in checked_kind(first, others, Mapping, table).items():
-                for name in (first, second):
-                    if name not in self:
-                        raise InputError(f"{show(name)} has no error that could be correlated; {known_names(name, self)}")
+            for name in (first, *checked_kind(first, others, Mapping, table)):
+                if name not in self:
+                    raise InputError(f"{show(name)} has no error that could be correlated; {known_names(name, self)}")
+            for second, value in others.items():
                 if isinstance(value, bool) or not isinstance(value, int | float) or not -1 < value < 1 or first == second:
                     raise InputError(f"{first} and {second} = {show(value)}; it must be between -1 and 1, of two inputs.")
                 if self.correlations.setdefault(frozenset((first, second)), float(value)) != value:
@@ -68,6 +68,14 @@ class StandardErrors(dict[str, Any]):
             np.linalg.cholesky(self.matrix)
         except np.linalg.LinAlgError:
             raise InputError(f"{show(self.nested)} contradict one another; check their signs and digits.") from None
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether errors are the same, and their correlations, which a dictionary of others leaves open."""
+        return dict(self) == other and getattr(other, "nested", self.nested) == self.nested
+
+    def __ne__(self, other: object) -> bool:
+        """Return whether they differ."""
+        return not self == other
 
     def __or__(self, other: Mapping[str, Any]) -> StandardErrors:  # type: ignore[override]
         """Return these errors and others, which are independent of these."""
