@@ -224,6 +224,8 @@ def test_a_shared_input_with_different_values_is_fitted_as_a_factor():
     assert found.inputs[1].label == "viscosity factor"
     assert found.inputs[1].value == pytest.approx(1.25, rel=1e-4)
     assert [contact.viscosity for contact in found.contacts] == pytest.approx([0.05, 0.005], rel=1e-4)
+    again = sb.fit(data, found.contact, free=["boundary_friction", "viscosity"], intervals=False)
+    assert (found.contact.viscosity, again.contact.viscosity) == pytest.approx((0.05, 0.05), rel=1e-4)
 
 
 # --- what data do not say ---

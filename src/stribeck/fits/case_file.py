@@ -189,6 +189,7 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], of_names: Standar
         else:
             edits.put(place, key, lines, instead)
     kept = {frozenset((a, b)): each for a, others in case.tables.get("correlations", {}).items() for b, each in others.items()}
+    kept |= case.errors.correlations  # that of a height with beta is in no table
     held = errors.keys() - fitted - of_names.keys()
     errors.correlations = {pair: each for pair, each in kept.items() if pair <= held} | of_names.correlations
     edits.removed.add("correlations")

@@ -317,10 +317,10 @@ def _result(
     contacts = tuple(model.contact_of(k, at.theta) for k in range(len(data.curves)))
     fitted: dict[str, float] = {}
     for free, each in zip(model.free, inputs, strict=True):
-        of_first = free.curves is not None or bool(free.also)
+        of_first = free.curves is not None or bool(free.also) or free.is_factor
         for name in free.names:
             own, first = (getattr(one, name, None) for one in (contact, contacts[0]))
-            value = first if of_first else own * each.value if own is not None and free.is_factor else each.value
+            value = first if of_first else each.value
             if own is not None and value is not None:
                 fitted[name] = value
     errors = at.prediction.error / at.prediction.friction
