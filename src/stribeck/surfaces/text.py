@@ -444,9 +444,10 @@ def mark_codes(z: Array, declared: tuple[float, ...] = ()) -> list[str]:
     notes = []
     for code in sorted({*declared} | {sign * size for size in MISSING_CODES for sign in (-1, 1)}):
         here = z == code
+        if not here.any():
+            continue
         rest = z[~here & ~np.isnan(z)]
-        far = rest.size > 0 and np.abs(rest - code).min() > 3 * (rest.max() - rest.min())
-        if here.any() and (code in declared or far):
+        if code in declared or (rest.size > 0 and np.abs(rest - code).min() > 3 * (rest.max() - rest.min())):
             notes.append(_missing_note(int(here.sum()), "hold", f"{code:g}, a code for no height,"))
             z[here] = np.nan
     return notes
