@@ -446,6 +446,18 @@ def test_bad_arguments_are_one_sentence(tmp_path, fitted):
 # --- posterior and outputs ---
 
 
+def test_the_posterior_is_as_wide_as_the_interval_where_the_errors_given_are_too_small(tmp_path, capsys):
+    data = noisy(5, noise=0.03, rows=8)
+    rows = zip(data.values, data.friction, 0.01 * data.friction, strict=True)
+    (tmp_path / "data.csv").write_text("speed [m/s],friction,error\n" + "\n".join(f"{u},{mu},{e}" for u, mu, e in rows))
+    case = EXAMPLES / "pdms_cylinder.toml"
+    answer = call(capsys, "fit", tmp_path / "data.csv", case, "--free", "roughness", "--posterior", "200", "--json")
+    found = json.loads(answer.out)
+    [each], drawn = found["inputs"], found["posterior"]["interval_95"]["roughness"]
+    wide, narrow = (math.log(high / low) for low, high in (each["interval_95"], drawn))
+    assert 0.6 < narrow / wide < 1.2
+
+
 def test_the_posterior_of_a_robust_fit_is_refused(capsys):
     answer = call(capsys, "fit", MEASURED, CASE, "--robust", "--posterior", "500")
     assert answer.code == 2 and "not a likelihood" in answer.err

@@ -1,7 +1,8 @@
 """The posterior of a fit by the ensemble sampler of emcee, for cases in which intervals of single inputs are not enough.
 
 Flat priors in the logarithms within the bounds, beside those given; where the size of the noise comes from the residuals it is
-integrated over with the prior 1/sigma.  All walkers are evaluated at once on the atlas.
+integrated over with the prior 1/sigma, and errors that were given count larger where the residuals say so, as in intervals.
+All walkers are evaluated at once on the atlas.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.files.writing import need_extra
+from stribeck.fits.intervals import information_of
 from stribeck.fits.least_squares import Minimum
 from stribeck.fits.result import Fit, FittedInput, format_value
 from stribeck.quantities.docstrings import Described
@@ -114,10 +116,11 @@ def _log_density(fit: Fit) -> Callable[[Array], Array]:
     goal, model = at.objective, at.objective.model
     low, high = goal.bounds
     rows, means = goal.priors
+    _, inflation, _ = information_of(at)
 
     def density(theta: Array) -> Array:
         squares = (goal.misfit(model.read(theta, fit.definition)) ** 2).sum(axis=1)
-        likelihood = -0.5 * len(model.data) * np.log(squares) if goal.sigma is None else -0.5 * squares
+        likelihood = -0.5 * len(model.data) * np.log(squares) if goal.sigma is None else -0.5 * squares / inflation
         inside = ((theta > low) & (theta < high)).all(axis=1) & np.isfinite(squares)
         return np.where(inside, likelihood - 0.5 * ((theta @ rows.T - means) ** 2).sum(axis=1), -np.inf)
 
