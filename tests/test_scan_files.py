@@ -325,6 +325,12 @@ def test_a_line_without_a_height_in_a_column_is_a_gap_and_moves_no_other_point(s
     assert scan.heights.shape == (48, 48)
 
 
+def test_a_code_is_one_also_where_heights_come_near_to_it(tmp_path):
+    ramp = np.linspace(-8000, 8000, 400)
+    ramp[[33, 34, 90]] = -9999
+    assert read(tmp_path, "x (um),z (nm)\n" + rows(X, ramp)).missing == 3
+
+
 def test_heights_that_reach_to_a_code_are_heights(tmp_path):
     ramp = np.linspace(-12000, 12000, 400)
     ramp[33] = -9999

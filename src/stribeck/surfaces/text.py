@@ -446,8 +446,9 @@ def mark_codes(z: Array, declared: tuple[float, ...] = ()) -> list[str]:
         here = z == code
         if not here.any():
             continue
-        rest = z[~here & ~np.isnan(z)]
-        if code in declared or (rest.size > 0 and np.abs(rest - code).min() > 3 * (rest.max() - rest.min())):
+        rest = np.sort(z[~here & ~np.isnan(z)])
+        # Other heights lie nearer to one another than the nearest of them to a code.
+        if code in declared or (rest.size > 1 and np.abs(rest - code).min() > np.diff(rest).max()):
             notes.append(_missing_note(int(here.sum()), "hold", f"{code:g}, a code for no height,"))
             z[here] = np.nan
     return notes
