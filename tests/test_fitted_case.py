@@ -142,6 +142,21 @@ def test_a_fitted_case_has_the_errors_of_the_fit_and_what_still_holds_of_the_cor
             assert back.errors.correlations == pytest.approx(found.correlations | {frozenset(uncertain): 0.5})
 
 
+def test_a_factor_that_curves_share_is_written_into_those_of_the_case(capsys, tmp_path):
+    case, data, out = tmp_path / "case.toml", tmp_path / "data.csv", tmp_path / "fitted.toml"
+    case.write_text(case_text({}) + '\n[fit.curves."b 2"]\nviscosity = "5 mPa*s"  # thin\n')
+    known, speeds = sb.load_case(case).contact, np.geomspace(1e-2, 1, 3)
+    rows = ["curve,speed (m/s),friction"]
+    for name, viscosity in (("a", 1.25 * known.viscosity), ("b 2", 6.25e-3)):
+        friction = sb.solve_batch(known.replace(viscosity=viscosity), speed=speeds).friction.total
+        rows += [f"{name},{u},{mu}" for u, mu in zip(speeds, friction, strict=True)]
+    data.write_text("\n".join(rows))
+    assert call(capsys, "fit", data, case, "--free", "viscosity", "--out", out).code == 0
+    back = sb.load_case(out)
+    found = back.contact.viscosity / known.viscosity, back.fit.curves["b 2"]["viscosity"] / 5e-3
+    assert found == pytest.approx((1.25, 1.25), rel=1e-4)
+
+
 def test_the_roughness_of_a_surface_scales_it_as_a_whole(capsys, tmp_path):
     contact, tables = PERSSON, {"surface": SURFACE}
     case, data, *_ = written(tmp_path, contact, tables)

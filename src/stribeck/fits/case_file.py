@@ -77,7 +77,7 @@ def check_fitted_case(case: Case, names: Sequence[str], path: PathLike) -> None:
     changed = contact.replace(**{name: value * TRIAL_FACTOR for name, value in known.items()})
     with TemporaryDirectory() as folder:
         free = [name for name in names if name in known]
-        _write(case, changed, free, StandardErrors(), lambda name: [], [], Path(folder) / "case.toml", path)
+        _write(case, changed, free, StandardErrors(), lambda name: [], [], Path(folder) / "case.toml", path, {})
 
 
 def write_fitted_case(fit: Fit, case: Case, path: PathLike, *, force: bool = False) -> None:
@@ -88,7 +88,8 @@ def write_fitted_case(fit: Fit, case: Case, path: PathLike, *, force: bool = Fal
     about = [f"# Fitted by stribeck {version('stribeck')} to {_sources(fit)}. {fit.outcome.value} {said}"]
     names = list(dict.fromkeys(each.name for each in fit.inputs))
     with atomic_write(path, (".toml",), force=force) as temporary:
-        _write(case, fit.contact, names, fit.errors, lambda name: _comments(name, fit), about, temporary, path)
+        shared = {each.name: each.value for each in fit.inputs if each.is_factor and each.curve is None}
+        _write(case, fit.contact, names, fit.errors, lambda name: _comments(name, fit), about, temporary, path, shared)
 
 
 def _sources(fit: Fit) -> str:
@@ -108,9 +109,16 @@ def _write(
     about: list[str],
     temporary: Path,
     path: PathLike,
+    factors: Mapping[str, float],
 ) -> None:
     """Write the case with the values of a contact and their errors, and check that what is read back is that contact."""
     edits = _edits(case, contact, names, errors, comments)
+    for kind in ("curves", "files"):  # the values of all curves have the factor that they share
+        for owner, given in case.tables.get("fit", {}).get(kind, {}).items():
+            for name in given.keys() & factors.keys():
+                row = contact.INPUTS.rows[name]
+                line = _entry(name, row.checked(given[name]) * factors[name], row.dimension)
+                edits.at |= {(f"fit.{kind}.{key}", name): [line] for key in (owner, json.dumps(owner), f"'{owner}'")}
     text = case.path.read_text(encoding="utf-8-sig")
     temporary.write_text("\n".join([*about, *_edited(text, edits, case.path.parent)]) + "\n", encoding="utf-8")
     try:
