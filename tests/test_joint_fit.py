@@ -65,6 +65,8 @@ def test_curves_of_one_file_share_what_their_file_has_for_itself(tmp_path):
     assert joint.data.curves == ("data 1: a", "data 1: b", "other")
     assert [each.label for each in joint.inputs] == ["boundary_friction", "roughness (data 1)", "roughness (other)"]
     assert joint.contacts[0].roughness == joint.contacts[1].roughness != joint.contacts[2].roughness
+    known = [each.name for each in joint.inputs[:2] if each.standard_error < 0.5]
+    assert known and [*joint.errors] == known  # those of the first curve, whose values the contact has
 
 
 def test_names_of_files_and_the_case_say_what_differs_and_the_case_counts_most(tmp_path):

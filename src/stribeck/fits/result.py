@@ -180,20 +180,17 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
         """
         width = math.sqrt(self._threshold) / INTERVAL_95 * np.sqrt(np.diag(self.covariance))
         relative = np.sqrt(np.expm1(width**2))
-        own = {
-            each.name: k
-            for k, each in enumerate(self.inputs)
-            if each.curve in (None, self.data.curves[0]) and relative[k] <= MAX_RELATIVE_ERROR
-        }
+        free = self._minimum.objective.model.free
+        own = {each.name: k for k, each in enumerate(free) if each.acts_on(0) and relative[k] <= MAX_RELATIVE_ERROR}
         found: dict[str, dict[str, float]] = {
             first: {second: float(self.correlation[own[first], own[second]]) for second in list(own)[k + 1 :]}
             for k, first in enumerate(own)
         }
         errors = StandardErrors({name: float(relative[k]) for name, k in own.items()}, found)
-        for free in self._minimum.objective.model.free:
-            if free.also and free.name in errors and not follows_surface(self.contact, errors):
-                for name in free.also:
-                    errors = errors.with_proportional(name, free.name)
+        for each in free:
+            if each.also and each.name in errors and not follows_surface(self.contact, errors):
+                for name in each.also:
+                    errors = errors.with_proportional(name, each.name)
         return errors
 
     def band(self, curve: int, values: Array) -> tuple[Array, Array, Array]:
