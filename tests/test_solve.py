@@ -412,6 +412,12 @@ def test_where_no_state_is_reached_the_solve_raises_in_any_case(subtests, monkey
             assert caught.value.outcome.value in str(caught.value)
 
 
+def test_a_film_at_which_the_nearest_rigid_cylinder_leads_nowhere_is_found_from_one_farther_off():
+    """The value is that of paths from a cylinder a hundred times as rigid."""
+    found = sb.solve(sb.Groups(9.803002294564979e-06, 1.588263316101289e-05, 1.146e-09), rtol=1e-4)
+    assert found.central_gap == pytest.approx(5.2877e-4, rel=1e-3)
+
+
 THIN = sb.Groups(7.0335645907234305e-09, 0.5082702500882404, 0.0)
 
 

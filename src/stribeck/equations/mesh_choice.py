@@ -31,15 +31,15 @@ from stribeck.solids.solid import Lengths
 __all__ = ["halvings_for", "mesh_for"]
 
 
-def kinks_of(guess: Guess, film: Film, x: Array, closed_at: float | None) -> Array:
-    """Return where the gradient has a kink, between the places ``x`` of a guess."""
-    # With flow factors that is where the last path of the flow closes, at the gap ``closed_at``; a fluid without a plateau has
-    # kinks where a wall is not sheared.
+def kinks_of(guess: Guess, film: Film, x: Array, at_gap: float | None) -> Array:
+    """Return where there is a kink, between the places ``x`` of a guess."""
+    # With flow factors that is at a gap, where the last path of the flow closes or liquid ceases to fill the gap; a fluid
+    # without a plateau has kinks where a wall is not sheared.
 
     def crossing(x: Array) -> Array:
         found = guess.fields(x)
-        if closed_at is not None:
-            return found[:1] - math.log(closed_at)
+        if at_gap is not None:
+            return found[:1] - math.log(at_gap)
         pressure = found[1] if film.uses_pressure else None
         return np.stack(film.tractions(np.exp(found[0]), pressure, np.array(guess.flux_gap)))
 
@@ -155,13 +155,6 @@ def mesh_for(
             pressure = fluid if film.uses_pressure else None
             stress = gap * film.at(groups.speed).gradient(gap, pressure, np.array(guess.flux_gap))
             fields.append((np.repeat(half_widths, x.shape[1]) * np.where(full, stress, 0.0) / sheared).reshape(nodal)[None])
-        if ends and jump is not None and stretch[0, 0] == 1.0:  # the liquid behind the exit fills the gap up to a kink
-            h = gap.reshape(x.shape)
-            partly = (x[:, 0] > 0) & (h.min(axis=1) < guess.flux_gap) & (h.max(axis=1) > guess.flux_gap)
-            kink = np.ptp(h, axis=1) / (2 * half_widths * guess.flux_gap**2)
-            drag = math.pi * math.sqrt(2 / float(central_gap.max()))
-            wrong = partly * kink * (2 * half_widths / x.shape[1]) ** 2 / (12 * drag * error)
-            fields.append(asked(np.sqrt(wrong)))
         return np.concatenate(fields)
 
     reach = 8 * scale
@@ -188,12 +181,16 @@ def mesh_for(
         start = replace(start, edges=edges / to_guess)
     kinks = centre + groups.model.profile.places
     reach = max([reach, *np.abs(kinks).tolist()])
-    if (fractional or closed_at is not None) and tolerance < COARSE_RTOL:
+    if tolerance < COARSE_RTOL:
         about = Mesh(base_edges(scale, reach), order) if start is None else start
         x = np.sort(about.nodes[: -about.order])
-        x = x[(x < 0) | (x > reformation)] if ends else x
-        of_film = kinks_of(guess, film.at(groups.speed), x * to_guess, closed_at) / to_guess
-        kinks = np.append(kinks, of_film)
+        in_cavity = (x > 0) & (x < reformation) & ends
+        if fractional or closed_at is not None:
+            of_film = kinks_of(guess, film.at(groups.speed), x[~in_cavity] * to_guess, closed_at)
+            kinks = np.append(kinks, of_film / to_guess)
+        if ends and jump is not None:  # the liquid behind the exit fills the gap up to a kink
+            of_liquid = kinks_of(guess, film, x[in_cavity] * to_guess, guess.flux_gap)
+            kinks = np.append(kinks, of_liquid / to_guess)
     mesh = adapt(fields, scale, reach, order, tolerance, start, anew, kinks)
     if not ends:
         return mesh

@@ -215,6 +215,8 @@ class State:
     def _on_panels(self, x: Array) -> Array:
         """Return the coordinates at which the panels have what is at ``x``: they have kinks of the shape where they end."""
         places, origin = self.equations.operators.model.profile.places, self.mesh.origin
+        if not places.size:
+            return x
         passed = (places - origin) * (places - self.exit) <= 0  # by the exit
         known = np.append(places[~passed], self.exit)
         at = np.argsort(known)

@@ -59,7 +59,6 @@ __all__ = [
     "path_to_cavity",
 ]
 
-MIN_RIGID = NEGLIGIBLE**-2  # Speed group or relative roughness from which the rigid cylinder starts Newton's iteration
 MAX_LOG_HEIGHT = 0.5 * math.log(sys.float_info.max)  # Of rigid films whose powers double precision holds
 
 
@@ -192,11 +191,13 @@ def cold_start(groups: Groups) -> StepPath[State]:
         groups = replace(groups, model=replace(model, film=groups.model.film) if is_rough(groups.model.film) else model)
     kappa = float(groups.relative_roughness)
     name = "speed" if groups.speed > 0 else "roughness"
-    top = max(0.0, math.log(MIN_RIGID / (float(groups.speed) or kappa)))
     # Of a heavier load, whose pressure is that of full contact, loading would cross the hand-over to the film.
     unloads = groups.speed > 0 and groups.load <= 1.0 and kappa > 0
-    if unloads:
-        top = max(0.0, min(0.5 * top, math.log(MIN_RIGID / kappa)))
+
+    def place(rigidity: float) -> float:
+        """Return where the speed group or the relative roughness is at least so large."""
+        up = max(0.0, math.log(rigidity / (float(groups.speed) or kappa)))
+        return max(0.0, min(0.5 * up, math.log(rigidity / kappa))) if unloads else up
 
     def groups_at(log_factor: float) -> Groups | None:
         factor = math.exp(log_factor)
@@ -214,7 +215,11 @@ def cold_start(groups: Groups) -> StepPath[State]:
         path = _to_profile(here, start)
         return path.states[-1] if path.outcome.ok else None
 
-    return coarse_path(groups_at, top, 0.0, seed)
+    for k in range(MAX_REFINEMENTS):  # a cylinder farther off deforms less
+        found = coarse_path(groups_at, place(NEGLIGIBLE**-k), 0.0, seed)
+        if found.states:
+            break
+    return found
 
 
 def first_path(groups: Groups) -> StepPath[State]:
