@@ -143,8 +143,8 @@ def fit(
     errors = np.nan_to_num(shift / np.sqrt(np.diag(covariance)))
     parts = [[by / math.sqrt(q) for q in quantiles] for by in errors]
     ends = [
-        [each.moved(theta, part) for each, part in zip(of_input, own, strict=True)]
-        for of_input, own, theta in zip(ends, parts, found.theta.tolist(), strict=True)
+        [each.moved(theta, part, theta + by) for each, part in zip(of_input, own, strict=True)]
+        for of_input, own, theta, by in zip(ends, parts, found.theta.tolist(), shift.tolist(), strict=True)
     ]
     return _result(fine, ends, covariance, quantiles, case, shift)
 

@@ -61,9 +61,11 @@ class Ends:
     low: float
     high: float
 
-    def moved(self, middle: float, part: float) -> Ends:
-        """Return the interval whose ends have moved by a part of their distance from the middle."""
-        return Ends(*(end + part * abs(end - middle) if math.isfinite(end) else end for end in (self.low, self.high)))
+    def moved(self, middle: float, part: float, fit: float) -> Ends:
+        """Return the interval whose ends have moved by a part of their distance from the middle, at most all of it."""
+        part = min(1.0, max(-1.0, part))  # A fit that moves farther than its interval says nothing about the ends
+        low, high = (end + part * abs(end - middle) if math.isfinite(end) else end for end in (self.low, self.high))
+        return Ends(min(low, fit), max(high, fit))
 
 
 def information_of(at: Minimum) -> tuple[Array, float, float]:

@@ -223,14 +223,14 @@ class HermitePath(ReadablePath):
         """Return the numbers of the intervals whose error is larger than allowed, once states on both sides are there."""
         count = len(self.knots) - 1
         tested = range(count) if is_whole else sorted({1, count - 2}) if count >= WINDOW else []
-        return [k for k in tested if self.excess(k, rtol, unexplained=True) > 1.0]
+        return [k for k in tested if self.excess(k, rtol) > 1.0]
 
-    def excess(self, k: int, rtol: float, unexplained: bool = False) -> float:
+    def excess(self, k: int, rtol: float) -> float:
         """Return the error of interval k over what is allowed: what its ends leave of the tolerance, or their errors."""
         apart, shape, explained = self._apart(k)
-        if unexplained:  # What errors of the states explain grows no smaller with more of them
-            apart = np.maximum(apart - explained, 0.0)
-        between, ends = SAFETY**2 * apart / shape, np.maximum(self.knots[k].errors, self.knots[k + 1].errors)
+        # What errors of the states explain grows no smaller with more of them.
+        unexplained = np.maximum(apart - explained, 0.0)
+        between, ends = SAFETY**2 * unexplained / shape, np.maximum(self.knots[k].errors, self.knots[k + 1].errors)
         return float((between.max(axis=0) / np.maximum(rtol - ends, ends))[self.problem.controlled].max())
 
 
