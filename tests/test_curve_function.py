@@ -114,9 +114,12 @@ def test_fields_are_solved_where_they_are_asked_for(curve):
 def test_a_state_that_rounding_limits_hands_its_mesh_on_with_its_inverse():
     """The next state had been begun on the mesh before, whose inverse has another size."""
     curve = sb.stribeck_curve(sb.Groups(1.0, 0.1, 1e-6), speed=(1e-7, 2e-6), rtol=1e-10, points=3)
-    assert curve.outcome.ok and any("Rounding" in note for note in curve.notes)
-    alone = sb.solve(sb.Groups(float(curve.values[1]), 0.1, 1e-6), rtol=1e-10)
-    assert curve.friction.total[1] == pytest.approx(float(alone.friction()), rel=1e-9)
+    # Whether rounding leaves the slowest state its tolerance, too, is chance.
+    assert curve.outcome in (sb.Outcome.CONVERGED, sb.Outcome.ROUNDING) and any("Rounding" in note for note in curve.notes)
+    assert len(curve) > 1
+    for speed, friction in zip(curve.values, curve.friction.total, strict=True):
+        alone = sb.solve(sb.Groups(float(speed), 0.1, 1e-6), rtol=1e-10, on_failure="return")
+        assert friction == pytest.approx(float(alone.friction()), rel=1e-9)
 
 
 def test_films_as_thin_as_rounding_take_few_states():
