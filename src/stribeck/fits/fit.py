@@ -139,12 +139,11 @@ def fit(
     if not states.uses_atlas:
         return _result(fine, ends, covariance, quantiles, case, None)
     shift = fine.theta - found.theta
-    # In its own standard errors an end moves as far as the fit: where nothing changes beside the fit, this goes anywhere.
-    errors = np.nan_to_num(shift / np.sqrt(np.diag(covariance)))
-    parts = [[by / math.sqrt(q) for q in quantiles] for by in errors]
+    # Where nothing changes beside the fit, solved states may lead it anywhere: its ends do not go along.
+    halves = np.sqrt(np.outer(np.diag(covariance), quantiles))
     ends = [
-        [each.moved(theta, part, theta + by) for each, part in zip(of_input, own, strict=True)]
-        for of_input, own, theta, by in zip(ends, parts, found.theta.tolist(), shift.tolist(), strict=True)
+        [each.beside(old, new, half) for each, half in zip(of_input, own, strict=True)]
+        for of_input, own, old, new in zip(ends, halves.tolist(), found.theta.tolist(), fine.theta.tolist(), strict=True)
     ]
     return _result(fine, ends, covariance, quantiles, case, shift)
 

@@ -61,11 +61,12 @@ class Ends:
     low: float
     high: float
 
-    def moved(self, middle: float, part: float, fit: float) -> Ends:
-        """Return the interval whose ends have moved by a part of their distance from the middle, at most all of it."""
-        part = min(1.0, max(-1.0, part))  # A fit that moves farther than its interval says nothing about the ends
-        low, high = (end + part * abs(end - middle) if math.isfinite(end) else end for end in (self.low, self.high))
-        return Ends(min(low, fit), max(high, fit))
+    def beside(self, old: float, new: float, half: float) -> Ends:
+        """Return the interval of a new fit: an end goes as far in its distance from the old as the fit in a half-width."""
+        # All of that distance at most: a fit that goes farther than its interval says nothing about the ends.
+        part = float(np.clip(np.nan_to_num((new - old) / np.float64(half)), -1.0, 1.0))
+        low, high = (end + part * abs(end - old) if math.isfinite(end) else end for end in (self.low, self.high))
+        return Ends(min(low, new), max(high, new))
 
 
 def information_of(at: Minimum) -> tuple[Array, float, float]:

@@ -194,10 +194,10 @@ def cold_start(groups: Groups) -> StepPath[State]:
     # Of a heavier load, whose pressure is that of full contact, loading would cross the hand-over to the film.
     unloads = groups.speed > 0 and groups.load <= 1.0 and kappa > 0
 
-    def place(rigidity: float) -> float:
-        """Return where the speed group or the relative roughness is at least so large."""
-        up = max(0.0, math.log(rigidity / (float(groups.speed) or kappa)))
-        return max(0.0, min(0.5 * up, math.log(rigidity / kappa))) if unloads else up
+    def place(part: float) -> float:
+        """Return where the speed group or the relative roughness is at least one over a part."""
+        up = max(0.0, -math.log(part * (float(groups.speed) or kappa)))
+        return max(0.0, min(0.5 * up, -math.log(part * kappa))) if unloads else up
 
     def groups_at(log_factor: float) -> Groups | None:
         factor = math.exp(log_factor)
@@ -215,8 +215,14 @@ def cold_start(groups: Groups) -> StepPath[State]:
         path = _to_profile(here, start)
         return path.states[-1] if path.outcome.ok else None
 
-    for k in range(MAX_REFINEMENTS):  # a cylinder farther off deforms less
-        found = coarse_path(groups_at, place(NEGLIGIBLE**-k), 0.0, seed)
+    # A cylinder farther off deforms less.
+    return _with_seed(lambda part: coarse_path(groups_at, place(part), 0.0, seed))
+
+
+def _with_seed(path: Callable[[float], StepPath[State]]) -> StepPath[State]:
+    """Return the first path whose seed is found, as a function of the part of the disturbance that is left; else the last."""
+    for k in range(MAX_REFINEMENTS):
+        found = path(NEGLIGIBLE**k)
         if found.states:
             break
     return found
@@ -302,13 +308,9 @@ def path_to_cavity(groups: Groups, deepest: float = -math.inf) -> StepPath[State
     def seed(here: Groups) -> State | None:
         return coarse_state(here, _behind_exit(ending, -here.model.cavity_pressure))
 
-    for _ in range(MAX_REFINEMENTS):  # a longer cavity disturbs the film less
-        # Two seeds, as the frame moves with the cavity: one state alone does not start another.
-        found = coarse_path(groups_at, place(-suction), place(groups.model.cavity_pressure), seed, seeds=2)
-        if found.states:
-            break
-        suction *= NEGLIGIBLE
-    return found
+    # A longer cavity disturbs the film less.  Two seeds, as the frame moves with it: one state alone does not start another.
+    end = place(groups.model.cavity_pressure)
+    return _with_seed(lambda part: coarse_path(groups_at, place(-part * suction), end, seed, seeds=2))
 
 
 def _behind_exit(state: State, suction: float) -> LongCavity:
