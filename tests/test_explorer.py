@@ -530,6 +530,8 @@ TYPED = [
     ("modulus", "Young's modulus 2 MPa, nu 0.49", {"youngs_modulus": "2 MPa", "poisson_ratio": 0.49}),
     ("roughness", "Ra 0.4 um", {"ra": "0.4 um"}),
     ("roughness", "0,5 um Rq", {"rq": "0.5 um"}),
+    ("roughness", "Ra 0,4 um", {"ra": "0.4 um"}),
+    ("modulus", "E = 2 MPa; nu = 0,3", {"youngs_modulus": "2 MPa", "poisson_ratio": 0.3}),
     ("viscosity", "46 cSt", {"kinematic_viscosity": "46 cSt", "density": "870 kg/m^3"}),
     ("viscosity", "46 cSt, 1000 kg/m^3", {"kinematic_viscosity": "46 cSt", "density": "1000 kg/m^3"}),
     ("speed", "1500 rpm, 30 mm", {"rotational_speed": "1500 rpm", "shaft_diameter": "30 mm"}),
@@ -566,6 +568,9 @@ def test_a_liquid_is_typed_by_its_grade_and_temperature(subtests):
         "water at 310 K": sb.fluids.water("310 K"),
         "silicone oil 100 cSt": sb.fluids.PRESETS["silicone-oil"](grade=100),
         "PAO 10": sb.fluids.PRESETS["pao-10"](),
+        "ISO VG-46 at -10 °C": sb.fluids.PRESETS["iso-vg"](grade=46, temperature=-10),
+        "water at 20,5 degrees C": sb.fluids.water(20.5),
+        "oil 46 7 at 60": sb.fluids.PRESETS["oil"](viscosity_40=46, viscosity_100=7, temperature=60),
     }
     for text, liquid in liquids.items():
         with subtests.test(text):
@@ -583,6 +588,12 @@ def test_words_that_mean_nothing_or_half_of_it_are_refused_with_what_to_type(sub
         ("modulus", "170 Shore A"): "shore_a = 170 must be between 20 and 90",
         ("modulus", "soft"): "modulus = 'soft' does not begin with a number",
         ("viscosity", "ISO VG 46 at 600 C"): "temperature = 600 degC must lie between",
+        ("viscosity", "water at 68 °F"): "temperature = '68 degF'; write it as '25 degC' or '298 K'.",
+        ("viscosity", "silicone oil 1000 cP"): "grade = '1000 cP'; write a kinematic viscosity",
+        ("viscosity", "water 2 mPa s"): "'s' is not understood",
+        ("viscosity", "water 50 %"): "weight_fraction is no condition of water",
+        ("viscosity", "oil 46 cSt at 40 °C, 7 cSt at 100 °C"): "has two values of temperature",
+        ("radius", "10 mm; 20 mm"): "radius = '10 mm; 20 mm' has two values of radius; type one.",
     }
     for (name, text), said in refused.items():
         with subtests.test(text), pytest.raises(sb.InputError, match=re.escape(said)) as problem:

@@ -26,7 +26,7 @@ from stribeck.contacts.contact import IN_PLACE_OF
 from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.contacts.parts import KINDS, LAW_NUMBERS
 from stribeck.explorer.inputs.inputs import Inputs, exact_text, plain_words, with_liquid, with_text
-from stribeck.explorer.inputs.typed import liquid_of
+from stribeck.explorer.inputs.typed import liquid_of, with_point
 from stribeck.fluids.fluid import Cavitation
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.schema import needed_of, numbers_of
@@ -296,7 +296,8 @@ def with_detail(now: Inputs, name: str, key: str, text: str) -> Inputs:
     table = {each: value for each, value in tables.get(choice.where, {}).items() if each != key}
     if text:
         several = isinstance(first_value(key), list)
-        table[key] = [_number(key, each.strip()) for each in text.split(",")] if several else _number(key, text)
+        numbers = [_number(key, each.strip()) for each in (text.split(",") if several else [with_point(key, text)])]
+        table[key] = numbers if several else numbers[0]
     elif key in choice.options[chosen_value(choice, tables)].needed:
         raise InputError(f"{key} is missing, which this choice needs; add {key} = {_text(first_value(key))}.")
     tables[choice.where] = table
@@ -327,7 +328,7 @@ def _of_surface(now: Inputs, tables: dict[str, Any]) -> Inputs:
 
 def typed(now: Inputs, name: str, text: str) -> Inputs:
     """Return the inputs after ``text`` was typed into a field: a number, or words, of the viscosity a liquid too."""
-    liquid = liquid_of(text) if name == "viscosity" else None
+    liquid = liquid_of(with_point(name, text)) if name == "viscosity" else None
     return with_text(now, name, text) if liquid is None else _solvable(with_liquid(now, liquid))
 
 

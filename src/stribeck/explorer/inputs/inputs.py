@@ -28,7 +28,7 @@ from stribeck.contacts.geometries import CONTACTS, INPUT_TABLES
 from stribeck.contacts.groups import GROUP_INPUTS
 from stribeck.contacts.inputs import InputTable
 from stribeck.contacts.parts import PURE_SLIDING
-from stribeck.explorer.inputs.typed import entries_of, examples
+from stribeck.explorer.inputs.typed import entries_of, examples, with_point
 from stribeck.fluids.description import Liquid
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.schema import Input
@@ -268,7 +268,7 @@ def value_of(inputs: Inputs, name: str) -> float:
 
 def with_text(inputs: Inputs, name: str, text: str) -> Inputs:
     """Return the inputs after ``text`` was typed into a field."""
-    text = _with_point(name, text.strip())
+    text = with_point(name, text.strip())
     if name in GROUP_FIELDS:
         return _with_group(inputs, name, read_number(name, _present(name, text)))
     row = inputs.fields[name]
@@ -393,9 +393,6 @@ def exact_text(value: float, dimension: str, unit: str = "") -> str:
     return f"{value!r} {DIMENSIONS[dimension].unit}".rstrip()
 
 
-_COMMA = re.compile(r"([-+\N{MINUS SIGN}]?[0-9]{0,40}),([0-9]{1,40})((?:[eE][-+]?[0-9]+)?(?:\s.*|[^0-9.,].*)?)", re.DOTALL)
-
-
 def _row(inputs: Inputs, name: str) -> Input:
     """Return the row of a quantity or a group."""
     return GROUP_FIELDS.get(name) or inputs.fields[name]
@@ -408,18 +405,6 @@ def _with_group(inputs: Inputs, name: str, value: float) -> Inputs:
     kept = {key: each for key, each in contact.inputs() if key not in moved}
     found = CONTACTS[inputs.table.geometry].from_groups(groups, **kept, asperity_friction=contact.asperity_friction)
     return inputs.edited({key: getattr(found, key) for key in moved})
-
-
-def _with_point(name: str, text: str) -> str:
-    """Return text with a decimal point for its decimal comma; refuse a comma that may part thousands."""
-    found = _COMMA.fullmatch(text)
-    if not found:
-        return text
-    whole, part, rest = found.groups()
-    if len(part) == 3 and whole.lstrip("+-\N{MINUS SIGN}0"):
-        number = f"{whole}{part}"
-        raise InputError(f"{name} = {show(text)} may be {whole}.{part} or {number}; write one of them, without a comma.")
-    return f"{whole or 0}.{part}{rest}"
 
 
 def _present(name: str, text: str) -> str:

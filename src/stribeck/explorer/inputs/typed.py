@@ -10,7 +10,6 @@ import functools
 import re
 from collections.abc import Iterator
 from contextlib import suppress
-from typing import Any
 
 from stribeck.contacts.forms import FORMS, Form
 from stribeck.contacts.inputs import InputTable
@@ -22,7 +21,27 @@ from stribeck.quantities.units import InputError, show
 Entries = dict[str, str | float]
 
 _PARTS = re.compile(r"\s*(?:;|,\s|\b(?:and|with|on|at)\b)\s*")
-_CONDITION = re.compile(r"(?:\b(vi)\s*)?([-+]?[0-9]+(?:\.[0-9]+)?)\s*(%|°?c(?:st)?\b|deg ?c\b|k\b)?", re.IGNORECASE)
+_COMMA = re.compile(r"(?<![\w.,])([-+\N{MINUS SIGN}]?[0-9]{0,40}),([0-9]{1,40})(?![0-9.,])")
+# A condition of a liquid, which is a number with its unit or a viscosity index, and what may stand between two.
+_CONDITION = re.compile(
+    r"(VI\s*)?([-+\N{MINUS SIGN}]?[0-9]+(?:\.[0-9]+)?)\s*(%|°\s?\w+|(?!(?:at|and|with|on|VI)\b)[a-z][^\s,;]*(?: ?[CFK]\b)?)?",
+    re.IGNORECASE,
+)
+_BETWEEN = re.compile(r"(?:[\s,;]|\b(?:at|and|with|on)\b)*", re.IGNORECASE)
+_OF_TEMPERATURE = re.compile(r"(?:°|deg(?:rees?)?)?\s?([CFK])", re.IGNORECASE)
+
+
+def with_point(name: str, text: str) -> str:
+    """Return text with points for its decimal commas; refuse a comma that may part thousands."""
+
+    def point(found: re.Match[str]) -> str:
+        whole, part = found.groups()
+        if len(part) == 3 and whole.lstrip("+-\N{MINUS SIGN}0"):
+            said = f"may be {whole}.{part} or {whole}{part}; write one of them, without a comma"
+            raise InputError(f"{name} = {show(text)} {said}.")
+        return f"{whole or 0}.{part}"
+
+    return _COMMA.sub(point, text)
 
 
 def forms_of(table: InputTable, name: str) -> list[Form]:
@@ -53,6 +72,8 @@ def entries_of(table: InputTable, name: str, text: str) -> Entries | None:
         named = _named(rows, part) or _by_unit(rows, part)
         if named is None:
             return None  # which its own row then refuses
+        if named[0].name in found:
+            raise InputError(f"{name} = {show(text)} has two values of {named[0].name}; type one.")
         found |= {named[0].name: _plain(*named)}
     begun = [form for form in forms if not form.joins and not found.keys().isdisjoint(each.name for each in form.inputs)]
     if len({form.of for form in begun}) < len(begun):
@@ -102,24 +123,36 @@ def _plain(row: Input, text: str) -> str | float:
 @functools.lru_cache(maxsize=64)
 def liquid_of(text: str) -> Liquid | None:
     """Return the liquid that a text names with its conditions, or None where it names none."""
-    plain = text.lower().replace("-", " ").strip()
-    for name, preset in sorted(PRESETS.items(), key=lambda each: not plain.startswith(each[0].partition("-")[0])):
+    text = text.strip()
+    for name, preset in sorted(PRESETS.items(), key=lambda each: not text.lower().startswith(each[0].partition("-")[0])):
         first, _, rest = name.partition("-")
-        begins = re.match(rf"{first}\b(?: {rest}\b)?|{rest or first}\b", plain)
-        if not begins:
-            continue
-        given: dict[str, Any] = {}
-        for vi, number, unit in _CONDITION.findall(plain[begins.end() :]):
-            main = next(iter(preset.conditions), "temperature")
-            if not preset.conditions:
-                continue
-            if vi:
-                given["viscosity_index"] = float(number)
-            elif unit == "%":
-                given[main] = float(number) / 100
-            elif unit in ("", "cst") and main != "temperature" and main not in given:
-                given[main] = float(number)
-            else:
-                given["temperature"] = f"{number} {'K' if unit == 'k' else 'degC'}"
-        return preset(**given)
+        begins = re.match(rf"(?:{first}\b(?:(?: in)?[ -]{rest}\b)?|{rest or first}\b)-?", text, re.IGNORECASE)
+        if begins:
+            return preset(**_conditions(text, text[begins.end() :], list(preset.conditions)))
     return None
+
+
+def _conditions(text: str, said: str, names: list[str]) -> dict[str, str | float]:
+    """Return the conditions of a liquid that has these; a number in another unit than theirs is refused with its name."""
+    other = _CONDITION.sub("", said)
+    if not _BETWEEN.fullmatch(other):
+        left = f"{show(other.strip())} is not understood"
+        raise InputError(f"viscosity = {show(text)}: {left}; type, for example, ISO VG 46 at 60 °C, or a number.")
+    given: dict[str, str | float] = {}
+    value: str | float
+    for index, number, unit in _CONDITION.findall(said.replace("\N{MINUS SIGN}", "-")):
+        of_temperature = _OF_TEMPERATURE.fullmatch(unit)
+        if index:
+            name, value = "viscosity_index", float(number)
+        elif unit.endswith("%"):
+            name, value = "weight_fraction", float(number) / 100
+        elif of_temperature:
+            letter = of_temperature[1].upper()
+            name, value = "temperature", f"{number} {letter if letter == 'K' else f'deg{letter}'}"
+        else:  # in their order, of which the temperature is the last
+            name = next((each for each in names if each == "temperature" or each not in given), "temperature")
+            value = f"{number} {unit}" if unit else float(number)
+        if name in given:
+            raise InputError(f"viscosity = {show(text)} has two values of {name}; type one.")
+        given[name] = value
+    return given
