@@ -14,8 +14,6 @@ from stribeck.bench.raw import Raw
 from stribeck.fits.repeats import CLEAR, FEWEST, SAME_SPEED, Row, counted, run_in
 from stribeck.quantities.formats import format_error, format_si
 
-__all__ = ["Point", "points_of", "run_in_of"]
-
 UNLIKELY = 0.05  # Probability below which passes differ by more than the noise within them
 
 

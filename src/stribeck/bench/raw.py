@@ -19,14 +19,12 @@ from stribeck.files.table_reading import read_table
 from stribeck.files.text_table import TextTable
 from stribeck.fits.columns import columns_of, curve_labels, has_column, known_name, with_errors_named
 from stribeck.fits.repeats import FEWEST, errors_of_means
-from stribeck.fits.rig import MADE_FRICTION, column_of, measured, prepared, temperatures
+from stribeck.fits.rig import column_of, measured, prepared, temperatures
 from stribeck.fits.stated import inputs_said
 from stribeck.fits.strokes import emptied, without_codes, without_codes_of_forces
-from stribeck.fits.values import LARGEST_FRICTION, checked, numbers, what_may_be_wrong
+from stribeck.fits.values import LARGEST_FRICTION, MADE_FRICTION, checked, numbers, what_may_be_wrong
 from stribeck.quantities.formats import format_error, format_si
 from stribeck.quantities.units import InputError, show
-
-__all__ = ["Raw", "read_raw"]
 
 # Headers of a time
 TIME = (

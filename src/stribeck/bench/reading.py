@@ -23,8 +23,6 @@ from stribeck.quantities.formats import format_si
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, checked_kind
 
-__all__ = ["read"]
-
 OnFile = Callable[[int, int], Any]  # Called with the number of files read and of all
 
 

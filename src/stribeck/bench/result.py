@@ -20,8 +20,6 @@ from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.results import ByValue, Card, Told
 from stribeck.quantities.standard_errors import INTERVAL_95
 
-__all__ = ["BenchCurve"]
-
 # Headers of inputs in the file; those of others are their names.
 HEADERS = {
     "load": "load [N]",

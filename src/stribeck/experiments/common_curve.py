@@ -15,8 +15,6 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 
-__all__ = ["Agreement", "Points", "agreement", "departure", "overlapping", "power_law"]
-
 SIZES = range(4, 13)  # Numbers of coefficients that the spline may have
 
 SHIFT = math.log(10.0)  # Largest shift of a curve along the abscissa that is tried

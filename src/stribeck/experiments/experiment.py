@@ -25,8 +25,6 @@ from stribeck.quantities.results import Card, Told
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solver.solve import solve
 
-__all__ = ["Experiment", "Prediction", "load_experiment", "predict_experiment"]
-
 FILE = "experiment.toml"  # Name of the file in the folder of an experiment
 FORCE, FRICTION, ERROR, ROW = "friction_force", "friction", "error", "row"  # Columns of its table that are no inputs
 OWN_KEYS = ("title", "source", "licence", "data", "unknown", "relative_to", "length", "models", "reasons")

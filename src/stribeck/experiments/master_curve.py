@@ -25,8 +25,6 @@ from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.units import InputError
 
-__all__ = ["Collapse", "CurveOffset", "MasterCurve", "PowerLaw", "master_curve"]
-
 FEWEST_ROWS = 6  # Of a curve, to be compared with others
 
 ONE_CURVE = 0.01  # Probability of chance below which curves are not one

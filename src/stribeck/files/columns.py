@@ -28,8 +28,6 @@ from stribeck.files.text_table import TextTable
 from stribeck.files.writing import PathLike, path_of
 from stribeck.quantities.units import InputError, RowError, show, to_si
 
-__all__ = ["BARE", "Column", "Columns", "has_dimension", "read_columns", "refuse_two_values", "si_factor", "stated_in"]
-
 BARE = {"%": 0.01, "percent": 0.01, "‰": 0.001} | dict.fromkeys(
     ("", "-", "–", "—", "/", "1", "N/N", "none", "dimensionless", "unitless"), 1.0
 )  # Units of a bare number

@@ -30,8 +30,6 @@ from stribeck.quantities.schema import has_error, split_error
 from stribeck.quantities.standard_errors import StandardErrors, correlation_table
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["case_of", "check_fitted_case", "write_fitted_case"]
-
 DIGITS = 10  # Digits of the values in the file, enough to solve the same state again
 
 AGREEMENT = 1e-8  # Relative difference that rounding to these digits may leave

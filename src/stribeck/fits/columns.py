@@ -13,11 +13,19 @@ from stribeck.contacts.geometries import LINE
 from stribeck.files.cells import is_named, normalised_header, number_of, split_header
 from stribeck.files.columns import BARE, has_dimension
 from stribeck.files.text_table import TextTable, as_comparable
-from stribeck.fits.rig import MADE_FRICTION, MADE_RATIO, MADE_SPEED, PATTERNS, RIG, is_mean_of_time
-from stribeck.fits.values import ABSCISSAS, Abscissa, dimension_of, is_set, listed, named_in_case, undeclared, unit_in
+from stribeck.fits.rig import MADE_RATIO, MADE_SPEED, PATTERNS, RIG, is_mean_of_time
+from stribeck.fits.values import (
+    ABSCISSAS,
+    MADE_FRICTION,
+    Abscissa,
+    dimension_of,
+    is_set,
+    listed,
+    named_in_case,
+    undeclared,
+    unit_in,
+)
 from stribeck.quantities.units import InputError, show
-
-__all__ = ["abscissa_of", "columns_of", "curve_labels", "has_column", "known_name", "with_errors_named"]
 
 # Headers of a speed that say that it is the sum.
 SUMS = {"sum of speeds", "sum of the speeds", "sum of the surface speeds", "u1 u2"}

@@ -29,8 +29,6 @@ from stribeck.quantities.formats import format_percent
 from stribeck.quantities.standard_errors import INTERVAL_95
 from stribeck.quantities.units import listed
 
-__all__ = ["Quality", "Unidentifiable", "excess_of", "judge_residuals", "undetermined"]
-
 # Standard error of a logarithm from which the 95 % interval is wider than a factor of ten.
 WIDEST = math.log(10.0) / (2 * INTERVAL_95)
 

@@ -33,8 +33,6 @@ from stribeck.fits.result import Fit, FittedInput, notes_of, outcome_of, unit_of
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.units import InputError
 
-__all__ = ["fit"]
-
 # Places tried before the least squares, those followed, and how far from the case they lie.
 STARTS, BEST_STARTS, START_FACTOR = 64, 4, 10.0
 

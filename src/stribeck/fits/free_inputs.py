@@ -13,8 +13,6 @@ from stribeck.fits.measurements import Measurements
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError
 
-__all__ = ["FreeInput", "free_inputs"]
-
 DEFAULT_FACTOR = 1e3  # Bounds of a free input without any of its own: this factor below and above its first value
 
 

@@ -21,8 +21,6 @@ from stribeck.fits.least_squares import Minimum, effective_parameters, minimise,
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["Ends", "covariance_of", "ends_of", "information_of"]
-
 LEVELS = (0.682689492137086, 0.95)  # Probabilities of the two intervals
 
 RESTARTS = 4  # Better minima on profiles that are followed before the fit counts as lost

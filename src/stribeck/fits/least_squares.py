@@ -26,8 +26,6 @@ from stribeck.fits.states import States
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["MAD", "NEAR", "Minimum", "Objective", "effective_parameters", "minimise", "objective", "settle"]
-
 CAUCHY = 2.385  # Constant c of the robust loss, in standard errors
 
 

@@ -36,17 +36,6 @@ from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import ByValue, Shown
 from stribeck.quantities.units import InputError, checked_kind, show
 
-__all__ = [
-    "Data",
-    "Measurements",
-    "files_of",
-    "measurements_of",
-    "read_file",
-    "read_measurements",
-    "reading_of",
-    "with_inputs_of_curves",
-]
-
 # Around what each column was taken for
 READ, CHANGE_READ = "Read: ", ". To change this, name the columns in [fit.columns] of the case."
 

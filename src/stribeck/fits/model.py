@@ -40,8 +40,6 @@ from stribeck.numerics.dual import Dual
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError
 
-__all__ = ["FrictionModel", "Prediction"]
-
 # Smallest and largest tolerance of states of balls that the noise of the data may ask for: what a rig resolves lies between
 # them.  That of the case holds where it is larger.
 BALL_RTOL = 1e-4, 1e-3

@@ -23,8 +23,6 @@ from stribeck.quantities.formats import format_percent
 from stribeck.quantities.results import table_lines
 from stribeck.quantities.units import InputError
 
-__all__ = ["Posterior", "check_posterior", "draw_posterior"]
-
 SEED = 20_261_121
 MIN_TIMES = 50  # Autocorrelation times after which emcee's documentation calls a chain long enough
 

@@ -18,20 +18,6 @@ from stribeck._types import Array
 from stribeck.files.cells import rows_listed
 from stribeck.quantities.formats import format_percent
 
-__all__ = [
-    "FEWEST",
-    "FEWEST_BLOCKS",
-    "Averaged",
-    "Row",
-    "average_repeats",
-    "counted",
-    "error_of_mean",
-    "errors_of_means",
-    "memory",
-    "run_in",
-    "sizes_of_noise",
-]
-
 FEWEST = 3  # Repeats from which their scatter is an error, and rows from which a setting is one
 
 FEWEST_BLOCKS = 8  # Blocks of a series from which the correlation of neighbours is estimated

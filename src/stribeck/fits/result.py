@@ -30,8 +30,6 @@ from stribeck.quantities.standard_errors import INTERVAL_95, StandardErrors
 from stribeck.quantities.units import DIMENSIONS
 from stribeck.solver.numbers import units_of_inputs
 
-__all__ = ["Fit", "FitOutcome", "FittedInput", "WithFittedInputs", "format_interval", "format_value", "notes_of", "outcome_of"]
-
 
 class FitOutcome(Enum):
     """How a fit ended; the value is a sentence."""

@@ -23,19 +23,6 @@ from stribeck.fits.repeats import FEWEST
 from stribeck.fits.values import MADE_FRICTION, dimension_of, is_set, named_in_case, numbers, undeclared, unit_in
 from stribeck.quantities.units import InputError, listed, show
 
-__all__ = [
-    "MADE_FRICTION",
-    "MADE_SPEED",
-    "RIG",
-    "column_of",
-    "is_same",
-    "measured",
-    "prepared",
-    "stated_size",
-    "temperature_note",
-    "temperatures",
-]
-
 # What a column of a rig may be beside those of a friction curve.
 RIG = (
     *("entrainment_speed", "sliding_speed", "surface_speeds", "slide_to_roll", "rotation"),

@@ -12,8 +12,6 @@ from stribeck.fits.rig import PATTERNS, is_same, stated_size
 from stribeck.fluids.description import celsius
 from stribeck.quantities.units import DIMENSIONS, InputError
 
-__all__ = ["entries_of", "inputs_said"]
-
 _OF_FLUID = r"(?:(?:test|sample|oil|fluid|liquid|lubricant|bath|pot|mean) )?"
 
 # What a line above the header may be called that gives an input of all rows.

@@ -26,8 +26,6 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.units import InputError
 from stribeck.solver.neighbours import Neighbours, Observed
 
-__all__ = ["Changes", "FrictionParts", "States", "places", "together"]
-
 Changes = Mapping[int, Change]
 """What free inputs, by their numbers, change of the model, in Hertz units."""
 

@@ -15,8 +15,6 @@ from stribeck.fits.rig import column_of
 from stribeck.quantities.units import MAX_NUMBER, InputError, show
 from stribeck.surfaces.text import MISSING_CODES
 
-__all__ = ["emptied", "without_codes", "without_codes_of_forces", "without_stops"]
-
 REST_SPEED = 1e-9  # Speed over the largest of the file below which it is zero but for rounding
 
 

@@ -17,20 +17,6 @@ from stribeck.files.columns import BARE, has_dimension, si_factor
 from stribeck.files.text_table import TextTable
 from stribeck.quantities.units import DIMENSIONS, InputError, show
 
-__all__ = [
-    "ABSCISSAS",
-    "MADE_FRICTION",
-    "Abscissa",
-    "checked",
-    "dimension_of",
-    "is_set",
-    "named_in_case",
-    "numbers",
-    "undeclared",
-    "unit_in",
-    "what_may_be_wrong",
-]
-
 Abscissa = Literal["speed", "speed_viscosity", "hersey_number", "hersey_per_length"]
 
 ABSCISSAS: tuple[Abscissa, ...] = ("speed", "speed_viscosity", "hersey_number")

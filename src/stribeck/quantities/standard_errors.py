@@ -13,8 +13,6 @@ from stribeck._types import Array
 from stribeck.quantities.keywords import known_names
 from stribeck.quantities.units import InputError, checked_kind, show
 
-__all__ = ["INTERVAL_95", "StandardErrors", "correlation_table", "errors_of_sources"]
-
 INTERVAL_95 = 1.959964  # Half of the 95 % interval of a normal distribution, in standard errors
 
 # Of two numbers that are proportional, less what keeps the matrix positive definite

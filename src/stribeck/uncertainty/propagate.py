@@ -32,8 +32,6 @@ from stribeck.solver.solve_error import SolveError
 from stribeck.uncertainty.result import Spread, Uncertainty
 from stribeck.uncertainty.states import LOG_STEP, VISCOUS, SampledStates, contact_after_move, films_of, size_of
 
-__all__ = ["STATE_RTOL", "Band", "errors_of_kept_inputs", "friction_band", "moves_of", "propagate"]
-
 SAMPLES = 20_000  # Random samples of the inputs
 SEED = 20261122  # Fixed, so that results repeat
 

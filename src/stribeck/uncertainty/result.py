@@ -14,9 +14,6 @@ from stribeck.quantities.results import Card, Told
 from stribeck.quantities.standard_errors import StandardErrors
 from stribeck.quantities.units import DIMENSIONS, listed
 
-__all__ = ["Spread", "Uncertainty"]
-
-
 # Load shares and friction coefficients below this are smaller than the error of the solver at its default tolerance
 MIN_OBSERVABLE = 1e-6
 

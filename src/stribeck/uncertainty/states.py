@@ -30,8 +30,6 @@ from stribeck.quantities.units import InputError
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["LOG_STEP", "SampledStates", "State", "films_of", "contact_after_move", "size_of"]
-
 FILM_NAMES = ("central_gap", "minimum_gap", "flux_gap")
 
 LOG_STEP = 1e-3  # Of inputs in differences that find powers of power laws, and derivatives of films at rest
