@@ -34,9 +34,9 @@ from stribeck.fits.result import (
     FittedInput,
     WithFittedInputs,
     columns_of_inputs,
+    fitted_input,
     notes_of_inputs,
     outcome_of_inputs,
-    unit_of,
 )
 from stribeck.motions.motion import Motion
 from stribeck.quantities.formats import format_percent
@@ -402,12 +402,10 @@ def _result(model: _LoopModel, at: Minimum, zero: str) -> LoopFit:
     errors = np.hypot(scatter, moved)
     freedom = max(n / widened - p, 1.0)
     quantiles = [float(t.ppf(0.5 + level / 2, freedom)) for level in LEVELS]
-    inputs = []
-    for free, theta, error, bound in zip(model.free, places.tolist(), errors.tolist(), at.at_bound.tolist(), strict=True):
-        narrow, wide = (free.interval(theta, error * each) for each in quantiles)
-        unit, dimension = unit_of(free.name, False), model.contact.INPUTS.rows[free.name].dimension
-        value = free.value(theta)
-        inputs.append(FittedInput(free.name, None, value, unit, free.start, False, error, narrow, wide, bound, dimension))
+    half = np.outer(errors, quantiles)
+    ends = np.stack([places[:, None] - half, places[:, None] + half], axis=-1)
+    numbers = (each.tolist() for each in (places, errors, ends, at.at_bound))
+    inputs = [fitted_input(model.contact.INPUTS, *each) for each in zip(model.free, *numbers, strict=True)]
     notes = [*notes_of_inputs(inputs), *model.data.notes, *filter(None, [zero])]
     if model.left_out:
         notes.append(f"{model.left_out} rows slower than a tenth of the largest speed left out.")

@@ -127,23 +127,7 @@ class MasterCurve(Exported, Told):
     notes: Annotated[tuple[str, ...], "what to know, one sentence each"] = field(default=())
 
     def __getitem__(self, over: str) -> Collapse:
-        """Return how well friction is one curve over an abscissa.
-
-        Parameters
-        ----------
-        over : {"speed_viscosity", "hersey_number"}
-            The abscissa.
-
-        Returns
-        -------
-        Collapse
-            The measure of it.
-
-        Raises
-        ------
-        KeyError
-            If there is no such abscissa.
-        """
+        """Return how well friction is one curve over ``"speed_viscosity"`` or ``"hersey_number"``."""
         found = [each for each in self.collapses if each.over == over]
         if not found:
             raise KeyError(f"{over}; there are {', '.join(each.over for each in self.collapses)}")

@@ -25,11 +25,11 @@ from stribeck.contacts.friction import Definition
 from stribeck.fits.case_file import case_of
 from stribeck.fits.diagnosis import judge_residuals, undetermined
 from stribeck.fits.free_inputs import FreeInput, free_inputs
-from stribeck.fits.intervals import Ends, covariance_of, ends_of
+from stribeck.fits.intervals import covariance_of, ends_beside, ends_of
 from stribeck.fits.least_squares import NEAR, Minimum, Objective, effective_parameters, minimise, objective, settle
 from stribeck.fits.measurements import Data, Measurements, measurements_of
 from stribeck.fits.model import FrictionModel
-from stribeck.fits.result import Fit, FittedInput, notes_of, outcome_of, unit_of
+from stribeck.fits.result import Fit, fitted_input, notes_of, outcome_of
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.units import InputError
 
@@ -138,11 +138,7 @@ def fit(
         return _result(fine, ends, covariance, quantiles, case, None)
     shift = fine.theta - found.theta
     # Where nothing changes beside the fit, solved states may lead it anywhere: its ends do not go along.
-    halves = np.sqrt(np.outer(np.diag(covariance), quantiles))
-    ends = [
-        [each.beside(old, new, half) for each, half in zip(of_input, own, strict=True)]
-        for of_input, own, old, new in zip(ends, halves.tolist(), found.theta.tolist(), fine.theta.tolist(), strict=True)
-    ]
+    ends = ends_beside(ends, found.theta, fine.theta, np.sqrt(np.outer(np.diag(covariance), quantiles)))
     return _result(fine, ends, covariance, quantiles, case, shift)
 
 
@@ -278,7 +274,7 @@ def _nearest(at: Minimum) -> Array:
 
 def _result(
     at: Minimum,
-    ends: list[list[Ends]],
+    ends: Array,
     covariance: Array,
     quantiles: list[float],
     case: Case,
@@ -286,24 +282,9 @@ def _result(
 ) -> Fit:
     contact = case.contact
     model, data = at.objective.model, at.objective.model.data
-    bound = at.at_bound
     width = np.sqrt(np.diag(covariance))
-    inputs = tuple(
-        FittedInput(
-            name=free.name,
-            curve=free.owner,
-            value=free.value(float(at.theta[i])),
-            unit=unit_of(free.name, free.is_factor, contact.INPUTS),
-            start=free.start,
-            is_factor=free.is_factor,
-            standard_error=float(width[i]),
-            interval_68=_interval(free, ends[i][0]),
-            interval_95=_interval(free, ends[i][1]),
-            at_bound=bool(bound[i]),
-            dimension="number" if free.is_factor else contact.INPUTS.rows[free.name].dimension,
-        )
-        for i, free in enumerate(model.free)
-    )
+    numbers = (each.tolist() for each in (at.theta, width, ends, at.at_bound))
+    inputs = tuple(fitted_input(contact.INPUTS, *each) for each in zip(model.free, *numbers, strict=True))
     outcome = outcome_of(at, inputs)
     freedom = max(len(data) - effective_parameters(at), 1.0)
     labels = [each.label for each in inputs]
@@ -360,8 +341,3 @@ def _scaled(free: Sequence[FreeInput], contact: Contact, contacts: Sequence[Cont
     return [
         f"The roughness scales the surface as a whole, so that beta follows: {contact.beta:.4g} in the case, {fitted} fitted."
     ]
-
-
-def _interval(free: FreeInput, ends: Ends) -> tuple[float, float]:
-    low = 0.0 if math.isinf(ends.low) else free.value(ends.low)
-    return low, math.inf if math.isinf(ends.high) else free.value(ends.high)

@@ -43,12 +43,9 @@ class FreeInput:
         """Return the input in SI units, or the factor, at a logarithm of the factor."""
         return self.start * math.exp(theta)
 
-    def interval(self, theta: float, half: float) -> tuple[float, float]:
-        """Return an interval of it by the half-width of the logarithm, 0 and infinity where it is open within the bounds."""
-        return (
-            self.value(theta - half) if theta - half > self.low else 0.0,
-            self.value(theta + half) if theta + half < self.high else math.inf,
-        )
+    def interval(self, low: float, high: float) -> tuple[float, float]:
+        """Return an interval of it by those of the logarithm, 0 and infinity where it is open within the bounds."""
+        return self.value(low) if low > self.low else 0.0, self.value(high) if high < self.high else math.inf
 
 
 def free_inputs(contact: Contact, data: Measurements, names: Sequence[str], settings: FitSettings) -> tuple[FreeInput, ...]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -52,19 +52,13 @@ class _BetterMinimumError(Exception):
         self.theta = theta
 
 
-@dataclass(frozen=True)
-class Ends:
-    """An interval of the logarithm of a factor; infinite where it is open within the bounds."""
-
-    low: float
-    high: float
-
-    def beside(self, old: float, new: float, half: float) -> Ends:
-        """Return the interval of a new fit: an end goes as far in its distance from the old as the fit in a half-width."""
-        # All of that distance at most: a fit that goes farther than its interval says nothing about the ends.
-        part = float(np.clip(np.nan_to_num((new - old) / np.float64(half)), -1.0, 1.0))
-        low, high = (end + part * abs(end - old) if math.isfinite(end) else end for end in (self.low, self.high))
-        return Ends(min(low, new), max(high, new))
+def ends_beside(ends: Array, old: Array, new: Array, half: Array) -> Array:
+    """Return the ends of a new fit: each goes as far in its distance from the old fit as this in a half-width."""
+    # All of that distance at most: a fit that goes farther than its interval says nothing about the ends.
+    part = np.clip(np.nan_to_num((new - old)[:, None] / half), -1.0, 1.0)
+    away = np.where(np.isfinite(ends), np.abs(ends - old[:, None, None]), 0.0)
+    low, high = np.moveaxis(ends + part[..., None] * away, -1, 0)
+    return np.stack([np.minimum(low, new[:, None]), np.maximum(high, new[:, None])], axis=-1)
 
 
 def information_of(at: Minimum) -> tuple[Array, float, float]:
@@ -105,39 +99,37 @@ def covariance_of(at: Minimum) -> tuple[Array, list[float], float]:
 
 def ends_of(
     found: Minimum, covariance: Array, quantiles: list[float], inflation: float, profile: bool, report: Callable[[str], None]
-) -> tuple[list[list[Ends]], Minimum]:
-    """Return the intervals of each free input, and the minimum that they belong to."""
-    p = len(found.theta)
+) -> tuple[Array, Minimum]:
+    """Return the ends of the intervals of each free input, shape (p, levels, 2), and the minimum that they belong to.
+
+    An end is infinite where an interval of the logarithm is open within the bounds.
+    """
     if not profile:
-        return [[_normal(float(found.theta[i]), float(covariance[i, i]) * q) for q in quantiles] for i in range(p)], found
+        half = np.sqrt(np.outer(np.diag(covariance), quantiles))
+        half = np.where(half < WIDEST, half, math.inf)[..., None]
+        return np.concatenate([-half, half], axis=-1) + found.theta[:, None, None], found
     thresholds = [q * inflation for q in quantiles]
     for _ in range(RESTARTS):
         try:
             finite = np.where(np.isfinite(covariance), covariance, 0.0)
-            nothing = [Ends(-math.inf, math.inf)] * len(thresholds)
-            lost = np.isinf(np.diag(covariance))
-            return [
-                nothing if lost[i] else _profile_ends(found, i, finite, thresholds, lambda: report("intervals"))
-                for i in range(p)
-            ], found
+            nothing = [(-math.inf, math.inf)] * len(thresholds)
+            ends = [
+                nothing if lost else _profile_ends(found, i, finite, thresholds, lambda: report("intervals"))
+                for i, lost in enumerate(np.isinf(np.diag(covariance)).tolist())
+            ]
+            return np.array(ends), found
         except _BetterMinimumError as better:
             found = settle(found.objective, better.theta, lambda: report("fitting"))
             covariance, _, _ = covariance_of(found)
     return ends_of(replace(found, ended=False), covariance, quantiles, inflation, False, report)
 
 
-def _normal(theta: float, squared: float) -> Ends:
-    """Return the interval of half-width sqrt(squared), open where that is no number or no factor in double precision."""
-    half = math.sqrt(squared) if squared < WIDEST**2 else math.inf
-    return Ends(theta - half, theta + half)
-
-
 def _profile_ends(
     at: Minimum, i: int, covariance: Array, thresholds: list[float], on_point: Callable[[], object]
-) -> list[Ends]:
-    """Return the intervals of one free input."""
-    sides = [_side(at, i, sign, covariance, thresholds, on_point) for sign in (-1.0, 1.0)]
-    return [Ends(low, high) for low, high in zip(*sides, strict=True)]
+) -> list[tuple[float, float]]:
+    """Return the ends of the intervals of one free input."""
+    below, above = (_side(at, i, sign, covariance, thresholds, on_point) for sign in (-1.0, 1.0))
+    return list(zip(below, above, strict=True))
 
 
 def _side(

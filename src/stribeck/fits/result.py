@@ -21,6 +21,7 @@ from stribeck.contacts.inputs import InputTable, follows_surface
 from stribeck.files.datasets import Column, listed, units_of
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
 from stribeck.fits.diagnosis import Quality, Unidentifiable
+from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.least_squares import Minimum
 from stribeck.fits.measurements import Measurements
 from stribeck.quantities.formats import format_percent, format_si
@@ -53,7 +54,6 @@ class FittedInput(Record):
     name: Annotated[str, "input of the contact", "1"]
     curve: Annotated[str | None, "curve or file that has it for itself; None where all share it", "1"]
     value: Annotated[float, "fitted value, or fitted factor", ""]
-    unit: Annotated[str, "SI unit; empty for numbers and factors", "1"]
     start: Annotated[float, "where the fit began", ""]
     is_factor: Annotated[bool, "whether it is a common factor on values that differ between the curves", "1"]
     standard_error: Annotated[float, "standard error of its logarithm; nan at a bound", "1"]
@@ -61,6 +61,13 @@ class FittedInput(Record):
     interval_95: Annotated[tuple[float, float], "95 % interval, likewise", ""]
     at_bound: Annotated[bool, "whether it ended at one of its bounds", "1"]
     dimension: Annotated[str, "kind of its unit, a key of :data:`stribeck.quantities.units.DIMENSIONS`"] = "number"
+
+    _properties = {"unit": ("1", "SI unit; empty for numbers and factors")}
+
+    @property
+    def unit(self) -> str:
+        """SI unit; empty for numbers and factors."""
+        return DIMENSIONS[self.dimension].unit.replace("*", " ")
 
     @property
     def label(self) -> str:
@@ -74,7 +81,18 @@ class FittedInput(Record):
         error = "at its bound"
         if not math.isnan(self.standard_error):
             error = format_percent(self.standard_error) if self.standard_error < 1 else "unknown"
-        return format_value(self), error, format_interval(self, 0.68), format_interval(self, 0.95)
+        narrow, wide = (_interval_text(self, *each) for each in (self.interval_68, self.interval_95))
+        return format_value(self), error, narrow, wide
+
+
+def fitted_input(
+    table: InputTable, free: FreeInput, theta: float, error: float, ends: Sequence[tuple[float, float]], at_bound: bool
+) -> FittedInput:
+    """Return a free input as it was fitted, by the logarithm of its factor, the error and the intervals of that."""
+    narrow, wide = (free.interval(*each) for each in ends)
+    dimension = "number" if free.is_factor else table.rows[free.name].dimension
+    value = free.value(theta)
+    return FittedInput(free.name, free.owner, value, free.start, free.is_factor, error, narrow, wide, at_bound, dimension)
 
 
 def columns_of_inputs(inputs: Sequence[FittedInput]) -> tuple[dict[str, Column], dict[str, Column]]:
@@ -90,23 +108,7 @@ class WithFittedInputs:
     inputs: tuple[FittedInput, ...]
 
     def __getitem__(self, name: str) -> FittedInput:
-        """Return a fitted input by its name, or by name and curve as in its label.
-
-        Parameters
-        ----------
-        name : str
-            The name.
-
-        Returns
-        -------
-        FittedInput
-            The input.
-
-        Raises
-        ------
-        KeyError
-            If no or more than one input is called so.
-        """
+        """Return a fitted input by its name, or by name and curve as in its label."""
         found = [each for each in self.inputs if name in (each.name, each.label)]
         if len(found) != 1:
             raise KeyError(f"{name}; fitted are {', '.join(each.label for each in self.inputs)}")
@@ -246,7 +248,7 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
             "held": [
                 {
                     "name": name,
-                    "unit": unit_of(name, False, self.contact.INPUTS),
+                    "unit": DIMENSIONS[self.contact.INPUTS.rows[name].dimension].unit.replace("*", " "),
                     "values": [getattr(each, name, None) for each in self.contacts],
                 }
                 for name in self.held
@@ -353,20 +355,14 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
         return f"The fitted friction comes from the solver, with relative error {self.model_error:.1g}{shift}."
 
 
-def unit_of(name: str, is_factor: bool, table: InputTable = LINE) -> str:
-    """Return the SI unit of a fitted input."""
-    return "" if is_factor else DIMENSIONS[table.rows[name].dimension].unit.replace("*", " ")
-
-
-def format_value(each: FittedInput, value: float | None = None, digits: int = 4) -> str:
+def format_value(each: FittedInput, value: float | None = None) -> str:
     """Return a value of a fitted input as short text with its unit."""
     value = each.value if value is None else value
-    return f"{value:.{digits}g}" if each.is_factor else format_si(value, each.dimension, digits)
+    return f"{value:.4g}" if each.is_factor else format_si(value, each.dimension, 4)
 
 
-def format_interval(each: FittedInput, level: float) -> str:
+def _interval_text(each: FittedInput, low: float, high: float) -> str:
     """Return an interval of a fitted input in words."""
-    low, high = each.interval_68 if level < 0.9 else each.interval_95
     if low == 0 and math.isinf(high):
         return "open"
     if low == 0:
