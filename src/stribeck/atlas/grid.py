@@ -21,10 +21,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array, Flags, Indices
+from stribeck.numerics.dual import chained, value_of
 
 MIN_LOAD = 1e-6  # Minimum load group of the atlas
 
@@ -59,33 +61,18 @@ class Region:
         """Whether the segments begin at rest, else at :data:`MIN_SPEED`."""
         return self.speeds[0] > 0
 
-    @property
-    def roughness_slope(self) -> float:
-        """Derivative of the local coordinate of roughness by ln(kappa)."""
-        return 2 * self.pieces[0] / math.log(self.roughness[1] / self.roughness[0])
-
-    def roughness_coordinate(self, log_kappa: Array) -> Array:
+    def roughness_coordinate(self, log_kappa: Any) -> Any:
         """Return the coordinate in [-1, 1] of the logarithm of the relative roughness."""
         low, high = (math.log(end) for end in self.roughness)
-        return np.asarray((2 * log_kappa - low - high) / (high - low))
+        return (2 * log_kappa - low - high) / (high - low)
 
-    def load_coordinate(self, log_load: Array, kappa: Array) -> Array:
+    def load_coordinate(self, log_load: Any, kappa: Any) -> Any:
         """Return the coordinate in [-1, 1] of L = -ln(load)."""
         delta = self.delta(kappa)
         low, high = (np.log(end + delta) for end in self.logs)
-        return np.asarray((2 * np.log(log_load + delta) - low - high) / (high - low))
+        return (2 * np.log(log_load + delta) - low - high) / (high - low)
 
-    def load_slopes(self, log_load: Array, kappa: Array) -> tuple[Array, Array]:
-        """Return the derivatives of :meth:`load_coordinate` with respect to L and to the logarithm of kappa."""
-        delta = self.delta(kappa)
-        low, high = (np.log(end + delta) for end in self.logs)
-        here, first, last = 1 / (log_load + delta), *(1 / (end + delta) for end in self.logs)
-        part = (np.log(log_load + delta) - low) / (high - low)
-        by_delta = 2 * (here - first - part * (last - first)) / (high - low)
-        slope = np.zeros_like(delta) if self.closing else delta / (1 + kappa)
-        return 2 * here / (high - low), by_delta * slope
-
-    def delta(self, kappa: Array) -> Array:
+    def delta(self, kappa: Any) -> Any:
         """Return what is added to L in the coordinate."""
         return np.full_like(kappa, self.closing) if self.closing else 2 * kappa / (1 + kappa)
 
@@ -219,11 +206,16 @@ def chebyshev_slopes(x: Array, terms: int) -> Array:
     return slopes
 
 
-def local(coordinate: Array, pieces: int) -> tuple[Indices, Array]:
+def local(coordinate: Any, pieces: int) -> tuple[Indices, Any]:
     """Return the piece that a coordinate in [-1, 1] lies on, and the coordinate in [-1, 1] of that piece."""
     along = 0.5 * pieces * (coordinate + 1)
-    piece = np.clip(along.astype(np.intp), 0, pieces - 1)
-    return piece, np.clip(2 * (along - piece) - 1, -1.0, 1.0)
+    piece = np.clip(value_of(along).astype(np.intp), 0, pieces - 1)
+    return piece, within(2 * (along - piece) - 1)
+
+
+def within(coordinate: Any) -> Any:
+    """Return a coordinate between -1 and 1, beyond which rounding may have led it, with the derivatives that it has."""
+    return chained(np.clip(value_of(coordinate), -1.0, 1.0), [coordinate], [None])
 
 
 def breaks_from(values: Array) -> Array:

@@ -26,7 +26,9 @@ from stribeck.atlas.grid import (
     chebyshev,
     chebyshev_slopes,
     local,
+    within,
 )
+from stribeck.numerics.dual import Dual, slope_of, value_of
 
 # Tabulated functions of the line, in the order of the table: the logarithms of fluid over contact share, of both viscous
 # frictions over :math:`\beta \bar F_N^{1/2} \lambda` and of the three gaps, and the offset less the central gap. Below the
@@ -98,18 +100,19 @@ class Table:
     about: dict[str, Any]  # Where the table comes from
     law: Array = field(default_factory=lambda: np.empty((2, 0)))
 
-    def ends(self, region: int, k: Array, y: Array) -> Array:
+    def ends(self, region: int, k: Any, y: Any) -> Any:
         """Return the logarithms of the speeds at which segments end, shape (6, states), at the coordinates of a region."""
-        products = chebyshev(k, BREAK_TERMS)[:, None] * chebyshev(y, BREAK_TERMS)
-        return breaks_from(self.breaks[region].reshape(-1, BREAK_TERMS**2) @ products.reshape(BREAK_TERMS**2, -1))
+        matrix, at_k, at_y = self.breaks[region].reshape(-1, BREAK_TERMS**2), value_of(k), value_of(y)
 
-    def end_slopes(self, region: int, k: Array, y: Array) -> tuple[Array, Array]:
-        """Return the derivatives of :meth:`ends` by both coordinates."""
-        matrix = self.breaks[region].reshape(-1, BREAK_TERMS**2)
-        by_k = chebyshev_slopes(k, BREAK_TERMS)[:, None] * chebyshev(y, BREAK_TERMS)
-        by_y = chebyshev(k, BREAK_TERMS)[:, None] * chebyshev_slopes(y, BREAK_TERMS)
-        found = (breaks_from(matrix @ products.reshape(BREAK_TERMS**2, -1)) for products in (by_k, by_y))
-        return next(found), next(found)
+        def sums(in_k: Array, in_y: Array) -> Array:
+            return breaks_from(matrix @ (in_k[:, None] * in_y).reshape(BREAK_TERMS**2, -1))
+
+        of_k, of_y = chebyshev(at_k, BREAK_TERMS), chebyshev(at_y, BREAK_TERMS)
+        found = sums(of_k, of_y)
+        if not isinstance(k, Dual):
+            return found
+        by_k, by_y = sums(chebyshev_slopes(at_k, BREAK_TERMS), of_y), sums(of_k, chebyshev_slopes(at_y, BREAK_TERMS))
+        return Dual(found, by_k * k.slope[:, None] + by_y * y.slope[:, None])
 
     def read(self, functions: tuple[int, ...], log_speed: Array, log_load: Array, kappa: Array, slopes: int) -> Array:
         """Return functions at states inside the box, and 0, 1 or 3 derivatives, shape (1 + slopes, functions, states).
@@ -120,27 +123,22 @@ class Table:
         # A ``log_speed`` of -inf is rest, ``kappa`` 0 a smooth surface.
         states, last = log_speed.size, self.grid.pieces * SEGMENTS
         block = np.full(states, last)
-        coordinates, chain = np.empty((3, states)), np.zeros(((0, 1, 1, 6)[slopes], states))
+        coordinates, chain = np.empty((3, states)), np.empty((slopes, slopes, states))
         regions = np.where(kappa > 0, self.grid.region_at(log_load, kappa), -1)
         for number, region in enumerate(self.grid.regions):
             inside = np.nonzero(regions == number)[0]
             for start in range(0, inside.size, 4 * CHUNK_STATES):
                 part = inside[start : start + 4 * CHUNK_STATES]
-                block[part], coordinates[:, part], found_chain = self._place(
-                    number, region, log_speed[part], log_load[part], kappa[part], slopes
-                )
-                if found_chain is not None:
-                    chain[:, part] = found_chain
+                block[part], *places = self._place(number, region, log_speed[part], log_load[part], kappa[part], slopes)
+                coordinates[:, part] = [value_of(place) for place in places]
+                if slopes:
+                    chain[..., part] = [slope_of(place) for place in places[:slopes]]
         found, film = self._sums(functions, block, coordinates, slopes), block == last
         if film.any():
             found[..., film] = self._film(functions, log_speed[film], slopes)
-            chain[:, film], chain[:1, film] = 0.0, 1.0
-        if slopes == 3:
-            _, t_L, y_L, t_kappa, y_kappa, k_kappa = chain
-            by_t, by_k, by_y = found[1:]
-            found[2:] = t_L * by_t + y_L * by_y, t_kappa * by_t + y_kappa * by_y + k_kappa * by_k
+            chain[..., film] = np.eye(slopes)[..., None]
         if slopes:
-            found[1] *= chain[0]
+            found[1:] = np.einsum("cfn,cin->ifn", found[1:], chain)
         if 0 in functions:  # below b_1 the power of the speed was taken off the odds
             row, power, early = functions.index(0), float(self.grid.power), (block % SEGMENTS == 0) & ~film
             found[0, row] += np.where(early, power * log_speed, 0.0)
@@ -167,42 +165,29 @@ class Table:
         return result
 
     def _place(
-        self, number: int, region: Region, s: Array, log_load: Array, kappa: Array, slopes: int
-    ) -> tuple[Indices, Array, Array | None]:
-        """Return the block and the local coordinates of states of a region, and the factors of the chain rule."""
-        # The factors are dt/ds, and with three slopes dt/dL, dy/dL, dt/dln(kappa), dy/dln(kappa), dk/dln(kappa), all local.
-        k, y = region.roughness_coordinate(np.log(kappa)), region.load_coordinate(log_load, kappa)
+        self, number: int, region: Region, log_speed: Array, log_load: Array, kappa: Array, slopes: int
+    ) -> tuple[Indices, Any, Any, Any]:
+        """Return the block of states of a region and their local coordinates, with 0, 1 or 3 derivatives."""
+        by: list[Any] = [log_speed, log_load, np.log(kappa)]
+        axes = np.eye(slopes)[..., None] + np.zeros(log_speed.shape)
+        by[:slopes] = map(Dual, by, axes)
+        s, L, log_kappa = by
+        k, y = region.roughness_coordinate(log_kappa), region.load_coordinate(L, np.exp(log_kappa))
         ends = self.ends(number, k, y)
-        segment = np.maximum((s >= ends).sum(axis=0), 0 if region.has_rest else 1)
+        segment = np.maximum((log_speed >= value_of(ends)).sum(axis=0), 0 if region.has_rest else 1)
         (i, k_local), (j, y_local) = (local(c, n) for c, n in zip((k, y), region.pieces, strict=True))
         first, power = self.grid.piece_at(number, 0, 0), self.grid.power
         block = np.where(segment < SEGMENTS, SEGMENTS * (first + i * region.pieces[1] + j) + segment, -1)
         block[segment >= SEGMENTS] = self.grid.pieces * SEGMENTS
-        at = np.arange(s.size)
-        high, low = ends[np.minimum(segment, SEGMENTS - 1), at], ends[np.clip(segment - 1, 0, SEGMENTS - 1), at]
+        at = np.arange(segment.size)
+        lowest, low, high = (
+            _chosen(ends, np.clip(row, 0, SEGMENTS - 1), at) for row in (np.zeros_like(segment), segment - 1, segment)
+        )
         squared = segment == 0
-        ratio = np.exp(power * np.minimum(s - ends[0], 0.0))
-        length = np.where(squared, 1.0, high - low)
-        length[length == 0] = 1.0
-        t = np.where(squared, 2 * ratio - 1, np.clip(2 * (np.where(squared, low, s) - low) / length - 1, -1.0, 1.0))
-        coordinates = np.stack([t, k_local, y_local])
-        if not slopes:
-            return block, coordinates, None
-        t_s = np.where(squared, 2 * power * ratio, 2 / length)
-        if slopes == 1:
-            return block, coordinates, t_s[None]
-        by_k, by_y = self.end_slopes(number, k, y)
-        choose = np.minimum(segment, SEGMENTS - 1), np.clip(segment - 1, 0, SEGMENTS - 1)
-        # Below b_1 the coordinate moves with b_1; on the others low and high move it in proportion.
-        t_high = np.where(squared, -2 * power * ratio, -(t + 1) / length)
-        t_low = np.where(squared, 0.0, (t - 1) / length)
-        t_k, t_y = (t_high * end[choose[0], at] + t_low * end[choose[1], at] for end in (by_k, by_y))
-        y_L, y_kappa = region.load_slopes(log_load, kappa)
-        k_kappa = region.roughness_slope / region.pieces[0]
-        moved = t_k * k_kappa + t_y * y_kappa
-        scale = region.pieces[1]
-        slope_k = np.full_like(t_s, region.roughness_slope)
-        return block, coordinates, np.stack([t_s, t_y * y_L, scale * y_L, moved, scale * y_kappa, slope_k])
+        ratio = np.exp(power * np.minimum(s - lowest, 0.0))
+        length = np.where(value_of(low) < value_of(high), high - low, 1.0)
+        logarithmic = within(2 * (np.where(squared | (log_speed == -np.inf), low, s) - low) / length - 1)
+        return block, np.where(squared, 2 * ratio - 1, logarithmic), k_local, y_local
 
     def _film(self, functions: tuple[int, ...], log_speed: Array, slopes: int) -> Array:
         """Return functions of smooth films and, if wanted, their derivative by ln(speed), as :meth:`Block.sum`."""
@@ -222,6 +207,12 @@ class Table:
                     slope = self.film[number, :, function - 1] @ chebyshev_slopes(x[here], terms)
                     found[1, row, here] = slope * 2 * pieces / (high - low)
         return found
+
+
+def _chosen(values: Any, rows: Indices, columns: Indices) -> Any:
+    """Return one value of each column, with its derivatives."""
+    found = value_of(values)[rows, columns]
+    return Dual(found, values.slope[:, rows, columns]) if isinstance(values, Dual) else found
 
 
 def unpack(grid: Grid, data: Any) -> Table:
