@@ -9,7 +9,7 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import chebyshev, legendre
+from numpy.polynomial import legendre
 
 from stribeck._types import Array
 from stribeck.fluids.laws import RateLaw
@@ -41,13 +41,11 @@ EXPONENT = Input(
     reason="1 is Newtonian, as the stress grows as the rate to this power; fluids that thicken are not modelled",
 )
 
-PANEL_WIDTH = 0.5  # Width of a panel of the table in the logarithm of the rate.
+# Width of a cell of the table in the logarithm of the rate, and coefficients of the polynomials on it: good to 1e-14 with
+# singularities pi/2 off the real axis (Carreau).
+CELL_WIDTH, CELL_TERMS = 0.0625, 7
 
-# Chebyshev coefficients of a panel, good to 1e-14 with singularities pi/2 off the real axis (Carreau).
-PANEL_COEFFICIENTS = 12
-
-CELLS_PER_PANEL = 8  # Cells of a panel on which the same function is a polynomial that is quicker to evaluate.
-CELL_TERMS = 7  # Coefficients of the polynomial on a cell, equal to the panel to rounding.
+GAUSS_NODES = 4  # Nodes between two places at which a moment is tabulated.
 
 MAX_LOG_RATE = 30.0  # Natural logarithm of the rate at which the table ends; above it the ratios have their limits.
 
@@ -96,62 +94,45 @@ class Table:
     stress: Callable[[Any], Any]
     smallest: float  # Natural logarithm of the rate below which the curve is that of viscosity one to rounding
 
-    @cached_property
-    def count(self) -> int:
-        """Number of panels."""
-        return int(np.ceil((MAX_LOG_RATE - self.smallest) / PANEL_WIDTH))
-
-    @cached_property
-    def coefficients(self) -> Array:
-        """Of both ratios, shape (panels, 2, PANEL_COEFFICIENTS)."""
-        points = np.cos(np.pi * (np.arange(PANEL_COEFFICIENTS) + 0.5) / PANEL_COEFFICIENTS)[::-1]
-        found = np.empty((self.count, 2, PANEL_COEFFICIENTS))
-        to_coefficients = np.linalg.inv(chebyshev.chebvander(points, PANEL_COEFFICIENTS - 1))
-        nodes, weights = legendre.leggauss(PANEL_COEFFICIENTS)
-        start = np.array([self.smallest])
-        x = np.exp(start)
-        g = self.stress(x)
-        first, second = g * x / 2, g * g * x / 3
-        for panel in range(self.count):
-            left = self.smallest + panel * PANEL_WIDTH
-            ends = np.append(left + 0.5 * PANEL_WIDTH * (1 + points), left + PANEL_WIDTH)
-            half = 0.5 * (ends - left)
-            at = left + half[:, None] * (1 + nodes)
-            x = np.exp(at)
-            g, slope = with_slope(self.stress, x)
-            integrand = x * x * slope * weights * half[:, None]
-            one, two = first + integrand.sum(axis=1), second + (g * integrand).sum(axis=1)
-            x = np.exp(ends)
-            g = self.stress(x)
-            ratios = np.stack([one / (g * x), two / (g * g * x)])
-            found[panel] = ratios[:, :-1] @ to_coefficients.T
-            first, second = one[-1], two[-1]
-        return found
-
     def moments(self, rate: Array, stress: Array) -> tuple[Array, Array]:
         """Return both integrals from zero to rates >= 0, with the stresses there."""
         one, two = self._ratios(np.log(np.fmax(rate, 1e-300)))  # a rate that is nan has a stress that is
         area = stress * rate
         return one * area, two * area * stress
 
+    @property
+    def _cells(self) -> int:
+        return int(np.ceil((MAX_LOG_RATE - self.smallest) / CELL_WIDTH))
+
     @cached_property
     def _ratios(self) -> Cells:
         """Both ratios, quick to evaluate."""
+        nodes, weights = legendre.leggauss(GAUSS_NODES)
 
-        def by_panels(log_rate: Array) -> Array:
-            place = np.clip((log_rate - self.smallest) / PANEL_WIDTH, 0.0, self.count * (1 - 1e-15))
-            panel = place.astype(np.intp)
-            basis = chebyshev.chebvander(2 * (place - panel) - 1, PANEL_COEFFICIENTS - 1)
-            return np.asarray(np.einsum("xfk,xk->fx", self.coefficients[panel], basis))
+        def integrated(log_rate: Array) -> Array:
+            """Return the ratios at places, by the integrals between each and the one before."""
+            order = np.argsort(log_rate)
+            ends = np.append(self.smallest, log_rate[order])
+            half = 0.5 * np.diff(ends)[:, None]
+            x = np.exp(ends[:-1, None] + half * (1 + nodes))
+            g, slope = with_slope(self.stress, x)
+            parts = x * x * slope * weights * half
+            x = np.exp(ends)
+            g_ends = self.stress(x)
+            first = g_ends[0] * x[0] / 2 + np.cumsum(parts.sum(axis=1))
+            second = g_ends[0] ** 2 * x[0] / 3 + np.cumsum((g * parts).sum(axis=1))
+            area = (g_ends * x)[1:]
+            found = np.empty((2, len(order)))
+            found[:, order] = first / area, second / (g_ends[1:] * area)
+            return found
 
-        return Cells.of(
-            by_panels, self.smallest, self.smallest + PANEL_WIDTH * self.count, CELLS_PER_PANEL * self.count, CELL_TERMS
-        )
+        end = self.smallest + CELL_WIDTH * self._cells
+        return Cells.of(integrated, self.smallest, end, self._cells, CELL_TERMS)
 
     @cached_property
     def _inverse(self) -> tuple[Array, Array]:
         """Logarithms of stresses and of the rates there, to start from."""
-        rate = np.linspace(self.smallest, MAX_LOG_RATE, 4 * self.count)
+        rate = np.linspace(self.smallest, MAX_LOG_RATE, self._cells // 2)
         return np.log(self.stress(np.exp(rate))), rate
 
     def rate(self, stress: Array) -> Array:
