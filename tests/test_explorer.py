@@ -606,6 +606,7 @@ def test_what_to_change_is_told_with_the_smallest_change_marked(answer, rested):
     assert [name for (name, *_), *_ in parts_of(answer)["answer"]["ways"][1:]] == names  # the curve tells the first at once
     (_, *heads), *rows = parts_of(rested)["answer"]["ways"]
     assert [text for text, *_ in heads] == ["to boundary", "to hydrodynamic"] and [name for (name, *_), *_ in rows] == names
+    assert rows[1][1][0] == "not reachable"  # by the load, as the command says
     for margin, (_, *cells) in zip(regime_margins(START.contact).margins, rows, strict=True):
         marks = [mark.factor for mark in (margin.less, margin.more) if mark is not None]
         assert sorted(float(factor) for *_, factor, _ in cells if factor) == pytest.approx(sorted(marks), rel=1e-6)
@@ -1314,3 +1315,5 @@ def test_the_numbers_have_the_intervals_of_the_command_and_the_curve_has_their_b
     found = sb.propagate(case.contact.replace(speed=float(band.values[at])), case.errors, transitions=False)["friction"]
     assert (band.low[at], band.high[at]) == pytest.approx([end / found.value for end in found.interval_95], rel=1e-9)
     assert (band.low < 1).all() and (band.high > 1).all()
+    kinds = [each["type"] for each in charts.friction_chart(answer)["series"]]
+    assert kinds[:2] == ["bands", "area"]  # what comes first is painted first, and the colours of regimes cover what is there

@@ -70,6 +70,7 @@ def test_the_minimum_of_the_demo_says_that_its_gap_is_beyond_the_range(pdms, cap
     assert pdms.notes[-1] == note
     assert "At the minimum of friction, speed 27.6 mm/s, the central gap is 3.5 h_rms, beyond the range" in note
     assert "asperities cause 15 % of the friction" in note
+    assert note.endswith("the minimum is lower and at a lower speed (stribeck check says by how much).")
     assert note in call(capsys, "curve", PDMS, *FEW, "-v").out
     assert note in call(capsys, "regimes", PDMS, "-v").out
 

@@ -35,7 +35,7 @@ WIDER_LAW = "Persson's law, from a table [surface], covers that range."
 USUAL_ALPHA = 2.0  # Decay coefficient of self-affine surfaces, by which groups alone are judged
 USUAL_BETA = 0.05  # Slope coefficient of self-affine surfaces, by which groups alone are judged
 NEGLIGIBLE_SHARE = 0.01  # Share of load and of friction of the asperities up to which their contact law does not matter
-TAIL_ADVICE = ", by 10 to 20 % (stribeck check gives the amount)."  # Ends the note on a minimum that the law's tail decides
+TAIL_ADVICE = " (stribeck check says by how much)."  # Ends the note on a minimum that the law's tail decides
 ATMOSPHERE = 1.01325e5  # Ambient pressure [Pa], the largest suction of a contact in the open
 
 

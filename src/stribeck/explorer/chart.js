@@ -252,8 +252,8 @@ const StribeckChart = (() => {
   }
 
   // What stands for a series in the legend.
-  function sampleOf({ colour, width, dash = [], symbol }) {
-    const look = { fill: "none", stroke: `var(--${colour})`, "stroke-width": symbol ? 1.6 : width };
+  function sampleOf({ colour, width, opacity = 1, dash = [], symbol }) {
+    const look = { fill: "none", stroke: `var(--${colour})`, "stroke-width": symbol ? 1.6 : width, "stroke-opacity": opacity };
     const corners = (CORNERS[symbol] ?? []).map(([i, j]) => `${11 + 4 * i},${5 + 4 * j}`).join(" ");
     const shape = symbol === "circle" ? element("circle", { cx: 11, cy: 5, r: 3.5, ...look })
       : symbol ? element("polygon", { points: corners, ...look })

@@ -66,7 +66,7 @@ def friction_chart(answer: Answer) -> Options:
         if not old:
             if curve.doubtful.any():
                 series.append(_doubtful_stretches(x, curve.doubtful))
-            series.append(_regime_bands(curve, answer.speeds, scale))
+            series.insert(0, _regime_bands(curve, answer.speeds, scale))  # which would cover the area
     for i, pin in enumerate(answer.pins):
         if pin.curve is not None:
             values = pin.curve.sizes[pin.definition]

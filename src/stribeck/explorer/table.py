@@ -193,8 +193,7 @@ def change_rows(answer: Answer) -> list[list[list[str]]]:
             *(
                 _change(mark.factor, mark.value, quantities[margin.name].dimension, _interval(mark), least)
                 if mark
-                # At another regime the search that way ended.
-                else ["not reachable" if margin.less is margin.more is None else "not directly", "", "", ""]
+                else ["not directly" if margins.is_beyond(target, margin) else "not reachable", "", "", ""]
                 for margin, mark in found
             ),
         )
