@@ -13,6 +13,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.bench.raw import Raw
+from stribeck.files.cells import rows_listed
 from stribeck.fits.repeats import (
     CLEAR,
     FEWEST,
@@ -341,8 +342,6 @@ def _stated(each: Pass, raw: Raw) -> float:
 
 def _rest_and_changes(raw: Raw, status: Flags | Indices) -> list[str]:
     """Return how many rows are left out at rest and while the speed changes."""
-    from stribeck.files.cells import rows_listed
-
     said = []
     for kind, what in ((AT_REST, "at rest"), (CHANGING, "in which the speed changes from step to step")):
         rows = np.flatnonzero(status == kind)

@@ -53,16 +53,17 @@ def run_in_of(passes: Sequence[Pass], names: Sequence[str]) -> list[int]:
 
 def points_of(passes: Sequence[Pass], raw: Sequence[Raw], paths: Sequence[str]) -> tuple[list[Point], list[str]]:
     """Return the points of all curves, and what is to be said of force zeros and of the scatter of passes."""
+    from scipy.stats import f, t
+
     level = _levels(passes)
     means = np.array([each.mean for each in passes])
     errors = np.array([each.error for each in passes])
     usable = errors > 0
     errors = np.where(usable, errors, np.median(errors[usable]) if usable.any() else 1.0)
     base = np.equal.outer(level, np.arange(level.max() + 1)).astype(float)
-    shift, said, extra = _force_zeros(raw, passes, level, base, means, errors, paths)
+    said, extra = _force_zeros(raw, passes, level, base, means, errors, paths)
     design = np.hstack([base, extra])
-    covariance = _inverse(design, errors)
-    friction = covariance @ (design.T @ (means / errors**2))
+    friction, covariance = _least(design, means, errors)
     residuals = (means - design @ friction) / errors
     points, widened = [], list[float]()
     curves = np.array([each.curve for each in passes])
@@ -75,8 +76,8 @@ def points_of(passes: Sequence[Pass], raw: Sequence[Raw], paths: Sequence[str]) 
         scale = math.sqrt(float(residuals[mine] @ residuals[mine]) / freedom) if freedom >= FEWEST - 1 else 0.0
         own = [each for each, one in zip(passes, mine, strict=True) if one]
         within = sum(each.independent - 1 for each in own) if any(np.ptp(each.values) for each in own) else math.inf
-        apart = scale > 1 and _chance_of(scale**2, freedom, within) < UNLIKELY
-        factor, quantile = (scale, _student(freedom)) if apart else (1.0, _student(within))
+        apart = scale > 1 and bool(f.sf(scale**2, freedom, min(max(within, 1.0), 1e6)) < UNLIKELY)
+        factor, quantile = (scale if apart else 1.0), float(t.ppf(0.975, max(freedom if apart else within, 1.0)))
         widened += [scale] * apart
         for k in levels:
             of = [each for each, at in zip(passes, level, strict=True) if at == k]
@@ -138,8 +139,8 @@ def _force_zeros(
     means: Array,
     errors: Array,
     paths: Sequence[str],
-) -> tuple[Array, list[str], Array]:
-    """Return the columns of force zeros, drifts and misalignment that the passes show, with a sentence on each."""
+) -> tuple[list[str], Array]:
+    """Return the columns of force zeros, drifts and misalignment that the passes show, after a sentence on each."""
     ways = np.array([each.direction for each in passes], float)
     files = np.array([each.file for each in passes])
     loads = np.array([_load(raw[each.file], each) for each in passes])
@@ -163,7 +164,7 @@ def _force_zeros(
             + ("." if not extra.shape[1] else ", less that of the others.")
             + (" Measure both directions, or the force without load." if not extra.shape[1] else "")
         )
-    return ways, said, extra
+    return said, extra
 
 
 def _zero_of(
@@ -182,14 +183,12 @@ def _zero_of(
         tried = np.column_stack([base, taken, column])
         if np.linalg.matrix_rank(tried / errors[:, None]) < tried.shape[1] or tried.shape[1] >= tried.shape[0]:
             continue
-        covariance = _inverse(tried, errors)
-        found = covariance @ (tried.T @ (means / errors**2))
+        found, covariance = _least(tried, means, errors)
         if abs(found[-1]) > CLEAR * math.sqrt(float(covariance[-1, -1])):
             taken, names = np.column_stack([taken, column]), [*names, name]
     design = np.column_stack([base, taken])
-    covariance = _inverse(design, errors)
-    found = (covariance @ (design.T @ (means / errors**2)))[-len(names) :]
-    doubts = np.sqrt(np.diag(covariance))[-len(names) :]
+    found, covariance = _least(design, means, errors)
+    found, doubts = found[-len(names) :], np.sqrt(np.diag(covariance))[-len(names) :]
     known = bool(measured[mine].all())
     parts = []
     for name, value, doubt in zip(names, found.tolist(), doubts.tolist(), strict=True):
@@ -219,22 +218,8 @@ def _load(raw: Raw, each: Pass) -> float:
     return float(np.nanmean(loads)) if np.isfinite(loads).any() else math.nan
 
 
-def _inverse(design: Array, errors: Array) -> Array:
-    """Return the covariance of the parameters of a weighted least squares."""
+def _least(design: Array, means: Array, errors: Array) -> tuple[Array, Array]:
+    """Return the parameters of a weighted least squares and their covariance."""
     weighted = design / errors[:, None]
-    found: Array = np.asarray(np.linalg.pinv(weighted.T @ weighted, hermitian=True), float)
-    return found
-
-
-def _chance_of(ratio: float, between: float, within: float) -> float:
-    """Return the probability that chance lets passes scatter by more than this ratio of variances."""
-    from scipy.stats import f
-
-    return float(f.sf(ratio, between, min(max(within, 1.0), 1e6)))
-
-
-def _student(freedom: float) -> float:
-    """Return half of the 95 % interval of Student's distribution, over its scale."""
-    from scipy.stats import t
-
-    return float(t.ppf(0.975, max(freedom, 1.0)))
+    covariance = np.asarray(np.linalg.pinv(weighted.T @ weighted, hermitian=True), float)
+    return covariance @ (weighted.T @ (means / errors)), covariance

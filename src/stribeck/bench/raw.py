@@ -208,7 +208,7 @@ def _zero_of_force(table: TextTable, settings: FitSettings) -> tuple[TextTable, 
         return table, None
     force = measured(table, "friction_force", settings)
     of_rows = np.array(table.numbers, float)
-    shorter = _only(table, ~apart)
+    shorter = table.of_rows(~apart)
     force = np.full(len(sizes), np.nan) if force is None else force
     stretches = [each[np.isfinite(force[each])] for each in _stretches(apart)]
     stretches = [each for each in stretches if len(each) >= FEWEST]
@@ -234,12 +234,6 @@ def _stretches(rows: Flags) -> list[Indices]:
     """Return the rows that are set, each stretch of neighbours by itself."""
     places = np.flatnonzero(rows)
     return [each for each in np.split(places, np.flatnonzero(np.diff(places) > 1) + 1) if len(each)]
-
-
-def _only(table: TextTable, kept: Flags) -> TextTable:
-    """Return the table with some of its rows."""
-    places = np.flatnonzero(kept).tolist()
-    return replace(table, rows=tuple(table.rows[i] for i in places), numbers=tuple(table.numbers[i] for i in places))
 
 
 def _time(table: TextTable, step: int | None) -> tuple[Array, bool, list[str]]:

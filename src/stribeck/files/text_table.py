@@ -9,7 +9,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from stribeck._types import Array
+from stribeck._types import Array, Flags
 from stribeck.files.cells import (
     NUMBER_WITH_COMMA,
     NUMBER_WITH_POINT,
@@ -142,6 +142,11 @@ class TextTable:
         rows = tuple((*row, cell) for row, cell in zip(self.rows, cells, strict=True))
         units = (*self.units_row, "") if self.units_row else ()
         return replace(self, header=(*self.header, name), rows=rows, units_row=units)
+
+    def of_rows(self, kept: Flags) -> Self:
+        """Return the table of some of its rows."""
+        places = np.flatnonzero(kept).tolist()
+        return replace(self, rows=tuple(self.rows[i] for i in places), numbers=tuple(self.numbers[i] for i in places))
 
     def of_columns(self, kept: Sequence[int]) -> Self:
         """Return the table of some of its columns."""

@@ -20,7 +20,6 @@ from stribeck.cases.model_parts import FILES
 from stribeck.cases.reading import load_case
 from stribeck.contact_laws.table import TableLaw
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.inputs import InputTable
 from stribeck.contacts.parts import PART_INPUTS
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import PathLike, atomic_write
@@ -186,7 +185,8 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], of_names: Standar
             continue
         place, key = _place(name)
         lines = [*comments(name), _entry_of(name, contact, errors)]
-        instead = _keys_of(name, given, contact.INPUTS) if place == "contact" else []
+        stands_for = contact.INPUTS.stands_for
+        instead = [each for each in given if stands_for.get(each, each) == name] if place == "contact" else []
         if instead == ["youngs_modulus", "poisson_ratio"]:
             youngs = contact.modulus * (1 - _number(given["poisson_ratio"]) ** 2)
             edits.put(place, "youngs_modulus", [*lines[:-1], _entry("youngs_modulus", youngs, "pressure", errors.get(name))])
@@ -237,11 +237,6 @@ def _found_from_anywhere(line: str, folder: Path) -> str:
     """Return a line that names a file beside the case, with the whole path."""
     named = re.fullmatch(r"(\s*\w+\s*=\s*)(['\"])(.+?)\2(.*)", line)
     return line if named is None else f"{named[1]}{json.dumps(str((folder / named[3]).resolve()))}{named[4]}"
-
-
-def _keys_of(name: str, given: Mapping[str, Any], table: InputTable) -> list[str]:
-    """Return the keys of a table that make an input: its own, those of a data sheet, and those that join it."""
-    return [key for key in given if table.stands_for.get(key, key) == name]
 
 
 def _number(value: Any) -> float:

@@ -27,7 +27,7 @@ from stribeck.fits.diagnosis import judge_residuals, undetermined
 from stribeck.fits.free_inputs import FreeInput, free_inputs
 from stribeck.fits.intervals import covariance_of, ends_beside, ends_of
 from stribeck.fits.least_squares import NEAR, Minimum, Objective, effective_parameters, minimise, objective, settle
-from stribeck.fits.measurements import Data, Measurements, measurements_of
+from stribeck.fits.measurements import Data, measurements_of
 from stribeck.fits.model import FrictionModel
 from stribeck.fits.result import Fit, fitted_input, notes_of, outcome_of
 from stribeck.numerics.threads import one_blas_thread
@@ -113,7 +113,12 @@ def fit(
     settings = _with_owners(settings, names, per_file)
     wanted = free_inputs(contact, data, names, settings)
     model = FrictionModel(contact, data, wanted)
-    _check_enough(data, wanted)
+    if len(data) <= max(2, len(wanted)):
+        raise InputError(
+            f"{data.path or 'the data'}: {len(data)} rows with speed and friction are too few to fit {len(wanted)} "
+            f"input{'s' * (len(wanted) != 1)} ({', '.join(each.name for each in wanted)}); at least {max(3, len(wanted) + 1)} "
+            "are needed, and ten times as many rows as inputs are advisable."
+        )
     report = _Progress(model, on_step)
     rtol = report.rtol = model.rtol_of_states(case.rtol)
     states = model.states(definition, rtol, report.count_state)
@@ -187,15 +192,6 @@ class _Progress:
             of_place = self.model.count_states(self.rtol)
             total = of_place * max(SOLVED_PLACES, self.done // of_place + 1)
             self.on_step(self.what, self.done, total)
-
-
-def _check_enough(data: Measurements, wanted: Sequence[FreeInput]) -> None:
-    if len(data) <= max(2, len(wanted)):
-        raise InputError(
-            f"{data.path or 'the data'}: {len(data)} rows with speed and friction are too few to fit {len(wanted)} "
-            f"input{'s' * (len(wanted) != 1)} ({', '.join(each.name for each in wanted)}); at least {max(3, len(wanted) + 1)} "
-            "are needed, and ten times as many rows as inputs are advisable."
-        )
 
 
 def _search(goal: Objective, definition: Definition, report: _Progress) -> Minimum:

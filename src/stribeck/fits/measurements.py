@@ -172,7 +172,7 @@ def read_file(path: PathLike, settings: FitSettings) -> Measurements:
         rows=np.array([rows[i][1] for i in order]),
         notes=(
             *_notes(table, columns, empty, made, run),
-            *map(_idle, idle),
+            *(f"No column was taken for {each.replace('_', ' ')}, of which [fit.units] has the unit." for each in idle),
             *([f"{show(columns['error'][0])} is of the friction in each row."] if is_relative else []),
             *temperature_note(table),
             *unused,
@@ -257,11 +257,6 @@ def _notes(
     if unused:
         notes.append(f"Columns not used: {', '.join(unused)}.")
     return tuple(notes)
-
-
-def _idle(meaning: str) -> str:
-    """Return the sentence on a unit of something that the file does not have."""
-    return f"No column was taken for {meaning.replace('_', ' ')}, of which [fit.units] has the unit."
 
 
 def _check_spread(data: Measurements, frictions: list[str]) -> None:

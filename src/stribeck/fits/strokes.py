@@ -98,15 +98,10 @@ def _moving(table: TextTable, speeds: Array, rest: Flags, frictions: list[Array]
         if rows.any():
             count = int(rows.sum())
             notes.append(f"{count} row{'s' * (count > 1)} {what} left out: {_listed(table, rows)}.")
-    kept = np.flatnonzero(~(rest | idle | turning)).tolist()
-    if not kept:
+    kept = ~(rest | idle | turning)
+    if not kept.any():
         raise InputError(f"{table.path}: no row is in motion; check the columns of speed and friction.")
-    return replace(
-        table,
-        rows=tuple(table.rows[i] for i in kept),
-        numbers=tuple(table.numbers[i] for i in kept),
-        notes=(*table.notes, *notes),
-    )
+    return replace(table.of_rows(kept), notes=(*table.notes, *notes))
 
 
 def _without(table: TextTable, name: str, coded: Flags) -> TextTable:

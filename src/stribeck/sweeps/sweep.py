@@ -258,17 +258,13 @@ def sweep(
             if on_progress is not None:
                 on_progress(_progress_of(store, time.monotonic() - began))
 
-        interrupted = solve_all(plan, store, _executor(workers, scheduler), row_of, report_progress)
+        execute: Executor = partial(solve_on_processes, workers) if workers > 1 else solve_here
+        execute = execute if scheduler is None else partial(solve_on_cluster, scheduler)
+        interrupted = solve_all(plan, store, execute, row_of, report_progress)
     if store.found + store.computed < store.total and not interrupted:
         raise SweepError("The run ended without an error, but states are missing; please report it.")
     seconds, found = time.monotonic() - began, open_sweep(store.path)
     return replace(found, interrupted=interrupted, computed=store.computed, seconds=seconds, note=store.note)
-
-
-def _executor(workers: int, scheduler: str | None) -> Executor:
-    if scheduler is not None:
-        return partial(solve_on_cluster, scheduler)
-    return partial(solve_on_processes, workers) if workers > 1 else solve_here
 
 
 def _progress_of(store: Store, seconds: float) -> SweepProgress:
