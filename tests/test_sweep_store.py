@@ -311,7 +311,7 @@ def test_a_store_of_another_format_is_refused_and_kept(copy, tmp_path):
     (former / "zarr.json").write_text('{"attributes": {"stribeck_sweep": 2}}')
     for place, said in {
         store: "has the format 99, of another version of stribeck",
-        former: "is a folder in which an earlier version kept a sweep.*give another name and run the sweep again",
+        former: "is a folder; give the file of a store, or the name of a new one",
     }.items():
         for action in (lambda place=place: sb.open_sweep(place), lambda place=place: sb.sweep(file, place)):
             assert re.search(said, sentence_of(action))

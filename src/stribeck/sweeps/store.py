@@ -36,7 +36,7 @@ from stribeck.quantities.units import InputError
 from stribeck.solver.numbers import numbers_of
 from stribeck.sweeps.design import SweepDesign
 
-FORMAT = 4  # SQLite's user_version of a store; 1 and 2 were folders of Zarr chunks, 3 had relative errors
+FORMAT = 4  # SQLite's user_version of a store
 APPLICATION_ID = 0x53545242  # SQLite's mark of what a file is for: STRB
 
 CLAIM_ATTEMPTS = 5  # Times that a lock must be free for its holder to count as dead
@@ -200,11 +200,6 @@ def read_store(path: PathLike) -> tuple[dict[str, Any], dict[str, Array], list[s
 def _checked_place(path: PathLike) -> Path:
     """Return the path of a store; refuse what cannot be one."""
     place = path_of(path)
-    if (place / "zarr.json").is_file():
-        raise InputError(
-            f"{place} is a folder in which an earlier version kept a sweep, a format that this one does not read; a store is "
-            "one SQLite file now: give another name and run the sweep again, or continue this one with that version."
-        )
     if place.exists() and not place.is_file():
         raise InputError(f"{place} is {'a folder' if place.is_dir() else 'no ordinary file'}; {NO_STORE_ADVICE}.")
     return place
