@@ -15,7 +15,7 @@ from command_line import call, case_text, fit_settings
 from fit_data import exact
 
 import stribeck as sb
-from stribeck import FitSettings
+from stribeck.cases.fit_settings import settings_of
 
 SPEEDS = (0.001, 0.01, 0.1, 1.0)
 FRICTIONS = (0.5, 0.25, 0.0625, 0.125)
@@ -100,7 +100,7 @@ def test_a_case_whose_surfaces_both_move_is_asked_which_speed_its_file_holds(tmp
     def read(header, columns=None, ratio=0.5):
         path = tmp_path / "rig.csv"
         path.write_text("\n".join([f"{header};COF", *(f"{u};{mu}" for u, mu in zip(SPEEDS, FRICTIONS, strict=True))]))
-        settings = FitSettings.of(contact.replace(slide_to_roll=ratio))
+        settings = settings_of(contact.replace(slide_to_roll=ratio))
         return sb.read_measurements(path, replace(settings, columns=columns or {})).values
 
     assert read("speed [m/s]", ratio=2.0) == pytest.approx(SPEEDS)

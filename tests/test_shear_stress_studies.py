@@ -10,7 +10,7 @@ from command_line import call
 
 import stribeck as sb
 from stribeck.asperity_friction import ShearStressTable
-from stribeck.cases.fit_settings import FitSettings
+from stribeck.cases.fit_settings import settings_of
 from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.explorer.answer import Answerer
 from stribeck.explorer.inputs import choices, inputs, url
@@ -91,7 +91,7 @@ def test_a_fit_finds_the_stress_and_its_exponent_within_their_intervals(contact,
 @pytest.mark.slow
 def test_slopes_of_a_fit_are_those_of_differences(contact, measured):
     case = contact.replace(shear_stress=1.5e5)
-    settings = FitSettings.of(case)
+    settings = settings_of(case)
     data = measurements_of(measured, settings)
     names = ("shear_stress", "roughness", "modulus", "speed_exponent")
     model = FrictionModel(case, data, free_inputs(case, data, names, settings))

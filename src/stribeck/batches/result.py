@@ -174,8 +174,8 @@ class BatchSolution(Exported, Shown, ByValue):
         columns["outcome"] = (self.dims, _names(self.outcome), *COLUMNS["outcome"])
         coords = {}
         for name in self.varied:
-            dims, values = _along(self.dims, self.input(name))
-            coords[name] = (dims, values, self.unit(name), name.replace("_", " "))
+            values, unit = self._input(name)
+            coords[name] = (*_along(self.dims, values), unit, name.replace("_", " "))
         about = {"title": "States of a lubricated rough contact", "rtol": self.rtol, "definition": "balanced"}
         return columns, coords, about | self._shared_attributes
 
@@ -190,41 +190,13 @@ class BatchSolution(Exported, Shown, ByValue):
         kept = {name: value for name, value in found.items() if not name.endswith(tuple(f"_{each}" for each in self.varied))}
         return kept | {f"{name}_group": each for name, each in groups.items()} | input_attributes(first, *self.varied)
 
-    def input(self, name: str) -> Array:
-        """Return an input of each state.
-
-        Parameters
-        ----------
-        name : str
-            Its name; groups for a batch of groups.
-
-        Returns
-        -------
-        ndarray
-            Values in SI units, of the shape of the batch.
-        """
+    def _input(self, name: str) -> tuple[Array, str]:
+        """Return an input of each state and its SI unit."""
         if self.contacts is None:
-            return np.broadcast_to(getattr(self.groups, name), self.groups.shape)
+            return np.broadcast_to(getattr(self.groups, name), self.groups.shape), "1"
         kept = [getattr(contact, name) for contact in self.contacts.ravel()]
-        return np.array(kept, dtype=float).reshape(self.contacts.shape)
-
-    def unit(self, name: str) -> str:
-        """Return the SI unit of an input; ``"1"`` of a bare number.
-
-        Parameters
-        ----------
-        name : str
-            Its name.
-
-        Returns
-        -------
-        str
-            The unit.
-        """
-        if self.contacts is None:
-            return "1"
         first: Contact = self.contacts.ravel()[0]
-        return first.INPUTS.rows[name].unit
+        return np.array(kept, dtype=float).reshape(self.contacts.shape), first.INPUTS.rows[name].unit
 
     def _card(self) -> Card:
         shape = ", ".join(f"{name} {size}" for name, size in zip(self.dims, self.groups.shape, strict=True)) or "one state"

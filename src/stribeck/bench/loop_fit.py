@@ -12,7 +12,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.cases.case import Case
-from stribeck.cases.fit_settings import FitSettings
+from stribeck.cases.fit_settings import FitSettings, settings_of
 from stribeck.cases.reading import load_case
 from stribeck.contacts.geometries import LineContact
 from stribeck.files.columns import Column, read_columns
@@ -254,7 +254,7 @@ def _problem(case: PathLike | Case | LineContact, given: dict[str, Any]) -> tupl
     motion = arguments["motion"]
     if not motion.repeats:
         raise InputError(f"motion = {show(motion)} does not repeat; a loop is one of a motion to and fro.")
-    return case, FitSettings.of(case) if settings is None else settings, arguments
+    return case, settings_of(case) if settings is None else settings, arguments
 
 
 class _LoopModel:

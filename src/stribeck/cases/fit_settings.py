@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import partial
-from typing import Any, Literal, Self
+from typing import Any, Literal
 
 from stribeck.cases.model_parts import take_parts
 from stribeck.cases.tables import (
@@ -328,22 +328,6 @@ class FitSettings:
         metadata={"words": "Whether a fitted roughness scales a surface as a whole, so that beta follows, as with [surface]."},
     )
 
-    @classmethod
-    def of(cls, contact: Contact) -> Self:
-        """Return the settings of a fit that asks for nothing.
-
-        Parameters
-        ----------
-        contact : Contact
-            What was measured.
-
-        Returns
-        -------
-        FitSettings
-            With its geometry and motion.
-        """
-        return cls(geometry=contact.groups.geometry, slide_to_roll=contact.slide_to_roll)
-
     @property
     def ratios(self) -> tuple[float, ...]:
         """The slide-to-roll ratios of the contact and of curves that have their own."""
@@ -364,6 +348,11 @@ class FitSettings:
 FitSettings.__doc__ = complete_docstring(
     FitSettings, {each.name: f"{each.type}\n    {each.metadata['words']}" for each in fields(FitSettings)}
 )
+
+
+def settings_of(contact: Contact) -> FitSettings:
+    """Return the settings of a fit that asks for nothing, with geometry and motion of what was measured."""
+    return FitSettings(geometry=contact.groups.geometry, slide_to_roll=contact.slide_to_roll)
 
 
 def keys_of_fit(geometry: str, table: str = "fit") -> dict[str, Key]:

@@ -39,7 +39,7 @@ from stribeck.contacts.parts import PART_INPUTS
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import path_of
 from stribeck.quantities.schema import has_error, relative_error, split_error
-from stribeck.quantities.standard_errors import StandardErrors, errors_of_sources
+from stribeck.quantities.standard_errors import StandardErrors, errors_of_sources, with_proportional
 from stribeck.quantities.units import InputError, show
 
 
@@ -136,15 +136,15 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     follows = scales_surface and "roughness" in known and "beta" not in known and not follows_surface(contact, known)
     try:
         if follows:
-            known = known.with_proportional("beta", "roughness")
+            known = with_proportional(known, "beta", "roughness")
         stated = StandardErrors(known, correlations)
         stated.correlations = known.correlations | stated.correlations
         if follows:  # what the height goes with, beta does
-            stated = stated.with_proportional("beta", "roughness")
+            stated = with_proportional(stated, "beta", "roughness")
         known = StandardErrors(known, stated.nested)
     except InputError as problem:
         _refuse(path, [f"[correlations] {problem}"])
-    of_contact: dict[str, Any] = {"slide_to_roll": FitSettings.of(contact).slide_to_roll, "scales_surface": scales_surface}
+    of_contact: dict[str, Any] = {"slide_to_roll": contact.slide_to_roll, "scales_surface": scales_surface}
     typical = typical_errors(contact, known) if checked["uncertainty"] == "typical" else {}
     return Case(
         path=path,

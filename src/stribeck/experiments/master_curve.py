@@ -181,7 +181,7 @@ class MasterCurve(Exported, Told):
 
     def _labelled(self) -> Labelled:
         rows: dict[str, Column] = {"row": ("row", self.data.rows, "1", "row of the file")}
-        columns = dict(self.data.columns())
+        columns = dict(self.data._columns)
         attributes: dict[str, Any] = {"title": "Master curve", "sentence": self.sentence}
         for each in self.collapses:
             words, unit = ABSCISSAS[each.over]

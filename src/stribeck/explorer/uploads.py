@@ -16,7 +16,7 @@ from typing import Any, Literal
 
 from stribeck._types import Array
 from stribeck.cases.case import Case
-from stribeck.cases.fit_settings import DEFAULT_FREE, FREE_INPUTS, FitSettings, check_fit_table
+from stribeck.cases.fit_settings import DEFAULT_FREE, FREE_INPUTS, check_fit_table, settings_of
 from stribeck.cases.law import SOURCES, law_of_file
 from stribeck.cases.reading import check_case
 from stribeck.contacts.contact import Contact
@@ -146,7 +146,7 @@ def read_measured(name: str, content: bytes, contact: Contact, asked: Mapping[st
     .. math:: U = \frac{(\eta U)}{\eta}, \qquad U = \mathrm{Hs} \, \frac{F_N}{\eta},
               \qquad U = \mathrm{Hs} \, \frac{F_N}{\eta R} \text{ of a ball}
     """
-    settings = FitSettings.of(contact)
+    settings = settings_of(contact)
     table = {name: each for name, each in (asked or {}).items() if name not in ("files", "file_names")}  # of several files
     settings = replace(check_fit_table(table, settings.geometry), slide_to_roll=settings.slide_to_roll)
     with lent_file(name, content) as path:

@@ -18,15 +18,23 @@ Labelled = tuple[Mapping[str, Column], Mapping[str, Column], Mapping[str, Any]]
 """Variables, coordinates and attributes of a dataset."""
 
 
+# What methods return, by their names
+RETURNED = {
+    "to_dict": "dict\n    Numbers, text, lists and dictionaries of these.",
+    "to_si": "dict of str to float\n    By name.",
+}
+
+
 class Tabled:
     """A result that is a labelled array."""
 
     def __init_subclass__(cls) -> None:
-        """Say of ``to_dict`` what it returns."""
+        """Say of ``to_dict`` and ``to_si`` what they return."""
         super().__init_subclass__()
-        method = vars(cls).get("to_dict")
-        if method is not None and "Returns" not in method.__doc__:
-            method.__doc__ = complete_docstring(method, {}, "dict\n    Numbers, text, lists and dictionaries of these.")
+        for name, returns in RETURNED.items():
+            method = vars(cls).get(name)
+            if method is not None and "Returns" not in method.__doc__:
+                method.__doc__ = complete_docstring(method, {}, returns)
 
     def _labelled(self) -> Labelled:
         raise NotImplementedError

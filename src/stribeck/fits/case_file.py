@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from stribeck.cases.case import Case
-from stribeck.cases.fit_settings import FitSettings
+from stribeck.cases.fit_settings import settings_of
 from stribeck.cases.law import ERRORS_OF_SURFACES, INPUTS_OF_SURFACES
 from stribeck.cases.model_parts import FILES
 from stribeck.cases.reading import load_case
@@ -46,7 +46,7 @@ def case_of(data: object, case: PathLike | Case | Contact) -> Case:
     if isinstance(case, Case):
         return case
     if isinstance(case, Contact):
-        return Case(Path(), case, fit=FitSettings.of(case))
+        return Case(Path(), case, fit=settings_of(case))
     if not isinstance(case, str | os.PathLike):
         raise InputError(f"case = {show(case)}; it must be the path of a case file, a Case, LineContact or PointContact.")
     if isinstance(data, str | os.PathLike) and "contact" in _tables(data) and not _tables(case) and Path(case).is_file():

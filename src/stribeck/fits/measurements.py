@@ -74,14 +74,9 @@ class Measurements(Exported, Shown, ByValue):
         """Return the number of rows."""
         return len(self.friction)
 
-    def columns(self) -> dict[str, Column]:
-        """Return curve, abscissa, friction and its error along ``row``, as columns of a dataset.
-
-        Returns
-        -------
-        dict of str to tuple
-            Dimension, values, unit and long name of each, as of :func:`stribeck.files.datasets.new_dataset`.
-        """
+    @property
+    def _columns(self) -> dict[str, Column]:
+        """Curve, abscissa, friction and its error along ``row``, as columns of a dataset."""
         names, files = (np.array(each, dtype=object) for each in (self.curves, self.files))
         found: dict[str, Column] = {
             **({"file": ("row", files[self.curve], "1", "file of the row")} if self.files else {}),
@@ -95,7 +90,7 @@ class Measurements(Exported, Shown, ByValue):
 
     def _labelled(self) -> Labelled:
         rows: dict[str, Column] = {"row": ("row", self.rows, "1", "row of the file")}
-        return self.columns(), rows, {"title": "Measured friction", "file": self.path}
+        return self._columns, rows, {"title": "Measured friction", "file": self.path}
 
 
 def error_of(data: Measurements, settings: FitSettings) -> Array | None:

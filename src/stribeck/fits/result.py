@@ -27,7 +27,7 @@ from stribeck.fits.measurements import Measurements
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.results import ByValue, Card, Told
 from stribeck.quantities.schema import MAX_RELATIVE_ERROR
-from stribeck.quantities.standard_errors import INTERVAL_95, StandardErrors
+from stribeck.quantities.standard_errors import INTERVAL_95, StandardErrors, with_proportional
 from stribeck.quantities.units import DIMENSIONS
 from stribeck.solver.numbers import units_of_inputs
 
@@ -190,7 +190,7 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
         for each in free:
             if each.also and each.name in errors and not follows_surface(self.contact, errors):
                 for name in each.also:
-                    errors = errors.with_proportional(name, each.name)
+                    errors = with_proportional(errors, name, each.name)
         return errors
 
     def band(self, curve: int, values: Array) -> tuple[Array, Array, Array]:
@@ -278,19 +278,13 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
     @property
     def _rows(self) -> dict[str, Column]:
         """What stands along the rows of the data."""
-        rows: dict[str, Column] = {"row": ("row", self.data.rows, "1", "row of the file"), **self.data.columns()}
+        rows: dict[str, Column] = {"row": ("row", self.data.rows, "1", "row of the file"), **self.data._columns}
         rows["fitted_friction"] = ("row", self.friction, "1", "fitted friction coefficient")
         label = "fitted less measured friction over the standard error of the row"
         return rows | {"residual": ("row", self.residuals, "1", label)}
 
     def to_si(self) -> dict[str, float]:
-        """Return the fitted values in SI units.
-
-        Returns
-        -------
-        dict of str to float
-            By the label of each fitted input.
-        """
+        """Return the fitted values in SI units, by the label of each fitted input."""
         return {each.label: each.value for each in self.inputs}
 
     def _labelled(self) -> Labelled:

@@ -98,27 +98,6 @@ class StandardErrors(dict[str, Any]):
         """
         return StandardErrors(self)
 
-    def with_proportional(self, name: str, to: str) -> StandardErrors:
-        """Return these errors with that of a number that is proportional to another.
-
-        Parameters
-        ----------
-        name : str
-            Input that has no error of its own, else this stands in its place.
-        to : str
-            Input that it is proportional to.
-
-        Returns
-        -------
-        StandardErrors
-            Errors with that of both.
-        """
-        found = self | {name: self[to]}
-        others = {each: r for pair, r in self.correlations.items() if to in pair for each in pair - {name, to}}
-        found.correlations |= {frozenset((name, each)): PROPORTIONAL_CORRELATION * r for each, r in others.items()}
-        found.correlations[frozenset((name, to))] = PROPORTIONAL_CORRELATION
-        return found
-
     @property
     def nested(self) -> dict[str, dict[str, float]]:
         """The correlations as they are given."""
@@ -137,6 +116,15 @@ class StandardErrors(dict[str, Any]):
             i, j = (place[name] for name in pair)
             found[i, j] = found[j, i] = each
         return found
+
+
+def with_proportional(errors: StandardErrors, name: str, to: str) -> StandardErrors:
+    """Return errors with that of a number that is proportional to another, in the place of its own if it has one."""
+    found = errors | {name: errors[to]}
+    others = {each: r for pair, r in errors.correlations.items() if to in pair for each in pair - {name, to}}
+    found.correlations |= {frozenset((name, each)): PROPORTIONAL_CORRELATION * r for each, r in others.items()}
+    found.correlations[frozenset((name, to))] = PROPORTIONAL_CORRELATION
+    return found
 
 
 def errors_of_sources(sources: Mapping[str, Mapping[str, float]]) -> StandardErrors:

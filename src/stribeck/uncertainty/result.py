@@ -120,13 +120,7 @@ class Uncertainty(Exported, Told):
         }
 
     def to_si(self) -> dict[str, float]:
-        """Return the values for the inputs as given in SI units.
-
-        Returns
-        -------
-        dict of str to float
-            By the name of each quantity.
-        """
+        """Return the values for the inputs as given in SI units, by the name of each quantity."""
         return {each.name: each.value for each in self.spreads}
 
     def _labelled(self) -> Labelled:
