@@ -133,6 +133,9 @@ class BallKnots:
             along = self.groups_at(s - LOG_STEP), self.groups_at(s + LOG_STEP), 2 * LOG_STEP
             [change] = changes_along(state, {"along": along}, HALF_DIGITS).values()
             slopes = measured_change(state, along, change, measure)
+            if self.cut_offs is not None:  # which move along the coordinate too
+                moved = [self._measure(s + step)(fine.equations, fine.unknowns) for step in (-LOG_STEP, LOG_STEP)]
+                slopes |= {name: slopes[name] + (moved[1][name] - moved[0][name]) / (2 * LOG_STEP) for name in WITHIN}
         else:
             values = dict(state.values)
             ends = [solve_cold(self.groups_at(s + step), self.rtol) for step in (LOG_STEP, -LOG_STEP)]
