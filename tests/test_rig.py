@@ -191,7 +191,7 @@ def test_a_spreadsheet_is_read_like_text(tmp_path):
     book.save(path)
     found = sb.read_measurements(path)
     assert len(found.values) == len(SPEEDS)
-    assert "Rows hidden in the sheet count too: 5, 6; delete them if they shall not." in found.notes
+    assert "Rows hidden in the sheet count too: 5, 6; delete those that should not." in found.notes
     (tmp_path / "bad.xlsx").write_text("no zip")
     with pytest.raises(sb.InputError, match="cannot be read as a spreadsheet"):
         sb.read_measurements(tmp_path / "bad.xlsx")

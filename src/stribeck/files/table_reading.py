@@ -128,7 +128,7 @@ def _read(
     taken = set(numbers)
     if taken & hidden:
         filtered = rows_listed(sorted(taken & hidden))
-        notes += (f"Rows hidden in the sheet count too: {filtered}; delete them if they shall not.",)
+        notes += (f"Rows hidden in the sheet count too: {filtered}; delete those that should not.",)
     left_out = [
         line.number
         for i, line in enumerate(lines[heading.below :], heading.below)
