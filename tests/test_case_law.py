@@ -72,6 +72,9 @@ def test_asperities_give_the_coefficients_or_the_contact_does(case):
         assert {name: getattr(found, name) for name in expected} == pytest.approx(expected, rel=1e-12)
         bare = sb.load_case(case(law, {"alpha": "1.0"})).contact
         assert found.law == bare.law == kind() and (bare.alpha, bare.beta) == (1.0, 0.06)
+        assert sb.load_case(case(law, {"alpha": None})).contact == bare  # it is that of the law
+        inputs = {name: getattr(bare, name) for name in bare.INPUTS.names if name != "alpha"}
+        assert sb.LineContact(**inputs, law=law) == bare
     assert sb.load_case(case("exponential", {"alpha": "1.0"})).contact.law is None
 
 

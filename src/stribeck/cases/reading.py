@@ -21,6 +21,7 @@ from stribeck.cases.fit_settings import FitSettings, check_fit_table, with_bench
 from stribeck.cases.law import ERRORS_OF_SURFACES, INPUTS_OF_SURFACES, KEYS_OF_SURFACES, LAW_KEY, SURFACE, law_of_file
 from stribeck.cases.model_parts import in_file, take_parts
 from stribeck.cases.tables import AS_GIVEN, HEAD, Key, Keys, noted, one_of, read_tables, tolerance, whole
+from stribeck.contact_laws.law import own_inputs
 from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contacts.contact import IN_PLACE_OF
 from stribeck.contacts.friction import DEFINITIONS
@@ -246,7 +247,9 @@ def _read_contact(table: dict[str, Any], problems: list[str], inputs: InputTable
     if not isinstance(contact, dict):
         return ReadInputs()
     given = {name: value for name, value in contact.items() if name in inputs.quantities}
-    found = read_inputs(given, inputs, (*_given_by_surface(table), *elsewhere), has_errors=True)
+    elsewhere = (*_given_by_surface(table), *elsewhere)
+    own = {} if "alpha" in elsewhere else own_inputs(NAMED_LAWS.get(str(contact.get("law"))))
+    found = read_inputs(own | given, inputs, elsewhere, has_errors=True)
     problems += [f"[contact] {problem}" for problem in found.problems]
     with noted(problems, "contact"):
         check_motion(given, inputs)

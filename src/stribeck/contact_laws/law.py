@@ -105,6 +105,11 @@ def largest_load(law: AsperityLaw | None) -> float:
     return 1.0 if is_exponential(law) else math.inf
 
 
+def own_inputs(law: Any) -> dict[str, float]:
+    """Return the alpha of a law, or of a class of laws, that has one of its own."""
+    return {"alpha": law.fixed_alpha} if hasattr(law, "fixed_alpha") else {}
+
+
 def check_alpha(law: AsperityLaw | None, alpha: float) -> None:
     """Refuse the alpha of another law where a law has one of its own."""
     fixed = getattr(law, "fixed_alpha", alpha)

@@ -16,7 +16,7 @@ from stribeck._types import Array
 from stribeck.asperity_friction.coulomb import Coulomb
 from stribeck.asperity_friction.law import AsperityFriction, refuse_coefficient
 from stribeck.asperity_friction.shear_stress import ShearStress
-from stribeck.contact_laws.law import AsperityLaw, check_alpha
+from stribeck.contact_laws.law import AsperityLaw, check_alpha, own_inputs
 from stribeck.contact_laws.scaled import law_of
 from stribeck.contacts.forms import FORMS
 from stribeck.contacts.groups import BASE_MODEL, BETA, SCALINGS, Geometry, Groups, Scaling
@@ -210,7 +210,8 @@ class Contact(Parts):
                 f"the law to the contact as {row.table}."
             )
         parts = {name: each for name, each in inputs.items() if name in PART_KEYWORDS and name not in self.INPUTS.names}
-        given = {name: each for name, each in inputs.items() if name not in parts}
+        asperities = law_of(law)
+        given = own_inputs(asperities) | {name: each for name, each in inputs.items() if name not in parts}
         if isinstance(given.get("radius"), RadiusOfProfile):  # of another contact, which dataclasses.replace hands over
             del given["radius"]
         elsewhere = [own for part, own in IN_PLACE_OF.items() if parts.get(part) is not None]
@@ -230,7 +231,7 @@ class Contact(Parts):
                 self.__dict__[name] = None
         if self.profile is not None:
             self.__dict__["radius"] = RadiusOfProfile(self.radius)
-        object.__setattr__(self, "law", law_of(law))
+        object.__setattr__(self, "law", asperities)
         check_alpha(self.law, self.alpha)
         self._check_scales()
         _ = self.groups.model
