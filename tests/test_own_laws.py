@@ -8,8 +8,7 @@ from fit_data import TRUE
 from yasuda import Yasuda
 
 import stribeck as sb
-from stribeck.fluids.laws import FlowFactors, ViscosityLaw
-from stribeck.fluids.rheology.tabulated import TabulatedLaw
+from stribeck.fluids.laws import FlowFactors, RateLaw, ViscosityLaw
 from stribeck.solids.solid import Lengths
 
 CONTACT = TRUE.replace(speed="100 mm/s", roughness="0.1 um")
@@ -185,7 +184,7 @@ def test_a_law_or_body_that_lacks_a_member_is_refused_with_its_name():
     for lacks in ("scaled", "stress", "time", "shape", "smallest"):
         members = {name: value for name, value in vars(Yasuda).items() if name != lacks and not name.startswith("__")}
         with pytest.raises(TypeError, match=lacks):
-            type("Lacking", (TabulatedLaw,), members | {"relaxation_time": 1e-4, "exponent": 0.5})()
+            type("Lacking", (RateLaw,), members | {"relaxation_time": 1e-4, "exponent": 0.5})()
     for lacks in ("name", "parameters", "scaled", "far_gap"):
         members = {name: value for name, value in vars(Pad).items() if name not in (lacks, "__dict__", "__weakref__")}
         body = type("Lacking", (), members)(1e-4)

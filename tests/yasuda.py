@@ -5,12 +5,13 @@ from typing import ClassVar
 
 import numpy as np
 
-from stribeck.fluids.rheology.tabulated import EXPONENT, RELAXATION_TIME, TabulatedLaw
+from stribeck.fluids.laws import RateLaw
+from stribeck.fluids.rheology.tabulated import EXPONENT, RELAXATION_TIME
 from stribeck.quantities.schema import Input
 
 
 @dataclass(frozen=True)
-class Yasuda(TabulatedLaw):
+class Yasuda(RateLaw):
     """The fluid that thins as g(x) = x (1 + x**a)**((n - 1)/a)."""
 
     name: ClassVar[str] = "yasuda"

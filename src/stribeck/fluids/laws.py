@@ -11,11 +11,12 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol, Self, runtime_checkable
+from typing import Any, ClassVar, NamedTuple, Protocol, Self, runtime_checkable
 
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.fluids.rheology.tabulated import table_of
 from stribeck.numerics.dual import with_slope
 from stribeck.quantities.registry import check_user_part, refusal
 from stribeck.quantities.schema import numbers_of
@@ -157,10 +158,13 @@ class Profile(NamedTuple):
 
 @runtime_checkable
 class RateLaw(Law, Protocol):
-    """Shear stress as a function of the shear rate, rising.
+    """Shear stress as a function of the shear rate, rising; moments and rate come from a table of it.
 
     In its methods rates x are times the relaxation time and stresses g times that time over the viscosity; both are >= 0.
     """
+
+    # Natural logarithm of the rate at which the table ends: above it the ratios of the moments have their limits.
+    max_log_rate: ClassVar[float] = 30.0
 
     @property
     @abstractmethod
@@ -172,21 +176,26 @@ class RateLaw(Law, Protocol):
         """Rate x below which the viscosity is constant up to even powers of it; zero where there is no such rate."""
         return 1.0
 
+    @property
+    @abstractmethod
+    def shape(self) -> tuple[float, ...]:
+        """Its numbers but for the relaxation time, which is the first argument, in the order of its arguments."""
+
+    @abstractmethod
+    def smallest(self) -> float:
+        """Return the logarithm of the rate below which the law is Newtonian to rounding."""
+
     @abstractmethod
     def stress(self, rate: Any) -> Any:
         """Return g(x)."""
 
-    @abstractmethod
     def rate(self, stress: Array) -> Array:
         """Return x(g)."""
+        return table_of(type(self), *self.shape).rate(stress)
 
-    @abstractmethod
     def moments(self, rate: Array, stress: Array) -> tuple[Array, Array]:
         r"""Return :math:`\int x \, dg` and :math:`\int g x \, dg` from zero to x, where the stress is g."""
-
-    def across(self, r_0: Array, r_1: Array, start: tuple[Array, Array] | None) -> Profile | None:
-        """Return the flow across a film as :func:`stribeck.fluids.local_flow.profile` does; None if it takes the moments."""
-        return None
+        return table_of(type(self), *self.shape).moments(rate, stress)
 
 
 def joined_names(base: str, *laws: Law) -> str:

@@ -23,13 +23,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.fluids.laws import FilmUnits, RateLaw
-from stribeck.fluids.rheology.tabulated import (
-    EXPONENT,
-    MIN_EXPONENT,
-    RELAXATION_TIME,
-    TabulatedLaw,
-    table_of,
-)
+from stribeck.fluids.rheology.tabulated import EXPONENT, MIN_EXPONENT, RELAXATION_TIME
 from stribeck.quantities.schema import Input, law
 from stribeck.quantities.units import InputError
 
@@ -53,7 +47,7 @@ INFINITE_VISCOSITY = Input(
 
 
 @law
-class _BetweenPlateaus(TabulatedLaw):
+class _BetweenPlateaus(RateLaw):
     """A law with a plateau of the viscosity at low and one at high rates, below that of the contact."""
 
     relaxation_time: Input = RELAXATION_TIME
@@ -71,6 +65,7 @@ class _BetweenPlateaus(TabulatedLaw):
 
     @property
     def shape(self) -> tuple[float, ...]:
+        """Its numbers but for the time."""
         return self.exponent, self.infinite_viscosity
 
 
@@ -185,15 +180,14 @@ class PowerLaw(RateLaw):
         """Return g(x)."""
         return rate * (rate * rate + PLATEAU_RATE**2) ** (0.5 * (self.exponent - 1))
 
-    def rate(self, stress: Array) -> Array:
-        """Return the rate at a stress."""
-        return PLATEAU_RATE * table_of(Carreau, self.exponent).rate(stress / PLATEAU_RATE**self.exponent)
+    @property
+    def shape(self) -> tuple[float, ...]:
+        """Its numbers but for the time."""
+        return (self.exponent,)
 
-    def moments(self, rate: Array, stress: Array) -> tuple[Array, Array]:
-        """Return both moments: those of Carreau's law in the units of its plateau."""
-        n, unit = self.exponent, PLATEAU_RATE**self.exponent
-        first, second = table_of(Carreau, n).moments(rate / PLATEAU_RATE, stress / unit)
-        return PLATEAU_RATE * unit * first, PLATEAU_RATE * unit**2 * second
+    def smallest(self) -> float:
+        """Return the logarithm of the rate below which the law is Newtonian to rounding."""
+        return -40.0
 
 
 def _ratio(viscosity: float, units: FilmUnits) -> float:

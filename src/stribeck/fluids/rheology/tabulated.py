@@ -1,8 +1,7 @@
-"""What laws of the shear rate share: moments and rates from a table, and the numbers of most."""
+"""What laws of the shear rate share: a table of moments and rates, and the numbers of most."""
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -12,13 +11,12 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from stribeck._types import Array
-from stribeck.fluids.laws import RateLaw
 from stribeck.numerics.cells import Cells
 from stribeck.numerics.dual import with_slope
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.schema import Input
 
-__all__ = ["EXPONENT", "MIN_EXPONENT", "RELAXATION_TIME", "TabulatedLaw", "table_of"]
+__all__ = ["EXPONENT", "MIN_EXPONENT", "RELAXATION_TIME", "table_of"]
 
 MIN_EXPONENT = 0.05  # Least exponent of a shear-thinning fluid; below it the stress is nearly that of a plastic solid.
 
@@ -47,37 +45,14 @@ CELL_WIDTH, CELL_TERMS = 0.0625, 7
 
 GAUSS_NODES = 4  # Nodes between two places at which a moment is tabulated.
 
-MAX_LOG_RATE = 30.0  # Natural logarithm of the rate at which the table ends; above it the ratios have their limits.
-
 INVERSION_STEPS = 3  # Newton steps in the logarithms that find a rate from its stress.
 
 
-class TabulatedLaw(RateLaw):
-    """A law whose moments and rate come from a table of its stress; it takes the relaxation time, then its :attr:`shape`."""
-
-    def moments(self, rate: Array, stress: Array) -> tuple[Array, Array]:
-        """Return both moments."""
-        return table_of(type(self), *self.shape).moments(rate, stress)
-
-    def rate(self, stress: Array) -> Array:
-        """Return the rate at a stress."""
-        return table_of(type(self), *self.shape).rate(stress)
-
-    @property
-    @abstractmethod
-    def shape(self) -> tuple[float, ...]:
-        """Its numbers but for the relaxation time, in the order of its arguments."""
-
-    @abstractmethod
-    def smallest(self) -> float:
-        """Return the logarithm of the rate below which the law is Newtonian to rounding."""
-
-
 @lru_cache(maxsize=64)
-def table_of(law: Callable[..., TabulatedLaw], *shape: float) -> Table:
+def table_of(law: Callable[..., Any], *shape: float) -> Table:
     """Return the table of a law with the relaxation time one; fits and sweeps ask for many."""
     of_law = law(1.0, *shape)
-    return Table(of_law.stress, of_law.smallest())
+    return Table(of_law.stress, of_law.smallest(), of_law.max_log_rate)
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +68,7 @@ class Table:
 
     stress: Callable[[Any], Any]
     smallest: float  # Natural logarithm of the rate below which the curve is that of viscosity one to rounding
+    largest: float  # That of the rate at which the table ends
 
     def moments(self, rate: Array, stress: Array) -> tuple[Array, Array]:
         """Return both integrals from zero to rates >= 0, with the stresses there."""
@@ -102,7 +78,7 @@ class Table:
 
     @property
     def _cells(self) -> int:
-        return int(np.ceil((MAX_LOG_RATE - self.smallest) / CELL_WIDTH))
+        return int(np.ceil((self.largest - self.smallest) / CELL_WIDTH))
 
     @cached_property
     def _ratios(self) -> Cells:
@@ -132,7 +108,7 @@ class Table:
     @cached_property
     def _inverse(self) -> tuple[Array, Array]:
         """Logarithms of stresses and of the rates there, to start from."""
-        rate = np.linspace(self.smallest, MAX_LOG_RATE, self._cells // 2)
+        rate = np.linspace(self.smallest, self.largest, self._cells // 2)
         return np.log(self.stress(np.exp(rate))), rate
 
     def rate(self, stress: Array) -> Array:
