@@ -16,7 +16,7 @@ SAME_PLACE = EPSILON**0.75  # Distance over the scale of a mesh below which two 
 SHARE = 0.5  # Share of a tolerance that each of two causes of error may take: the states of a path and what lies between them
 
 # Paths of states along ln of what varies.
-MIN_LOG_STEP = 0.02  # Shortest step and interval: a path that needs a shorter one ends, an interval keeps its error
+MIN_LOG_STEP = 0.02  # Shortest step and interval, a table's too: a shorter one ends a path, and an interval keeps its error
 MAX_LOG_STEP = 6.0  # Longest step, and radius of convergence of series that show none; longer ones pass over what is between
 STEP_GROWTH = 2.0  # Largest ratio of neighbouring steps, and of a step that failed to the next; with more, more steps fail
 MAX_STATES = 400  # States of a path, and neighbours that are kept: a limit on work and memory
@@ -37,7 +37,7 @@ MAX_STEPS = 60  # Steps of an iteration: Newton's, a fixed point's, or those of 
 GMRES_RTOL = 3e-2  # Relative error of a step of Newton's iteration that GMRES may leave
 REBUILD_AT = 12  # Steps of GMRES, or nodes that changed sides, above which a film that ends has a new preconditioner
 BAND, MAX_BAND = 5, 16  # Angular modes that the preconditioner couples, and where these do not serve
-LEAST_DEGREE = 7  # Degree of panels of a ball
+LEAST_DEGREE = 7  # Degree of panels of a ball, and of the table of a flow curve
 LEAST_MODES = LEAST_DEGREE + 1  # Angular modes of first meshes: as many as nodes of a panel
 MAX_MODES = 200  # Angular modes
 MAX_BYTES = 670_000_000  # Memory of operators and preconditioner of a mesh

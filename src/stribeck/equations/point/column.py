@@ -33,15 +33,13 @@ from numpy.polynomial import legendre
 
 from stribeck._types import Array, Flags
 from stribeck.fluids.laws import RateLaw
-from stribeck.numerics.dual import with_slope
-from stribeck.numerics.settings import EPSILON, HALF_DIGITS, LEAST_DEGREE, MAX_REFINEMENTS, MAX_STEPS, NEGLIGIBLE
+from stribeck.numerics.cells import Cells
+from stribeck.numerics.settings import EPSILON, HALF_DIGITS, LEAST_DEGREE, MAX_REFINEMENTS, MAX_STEPS, MIN_LOG_STEP, NEGLIGIBLE
 
 # Columns at which rules are compared: slips, shear rates at the walls by the pressure gradient alone, angles between them.
 SAMPLE_STATES = np.array(
     [(slip, slope, angle) for slip in (0.3, 5.0, 50.0, 500.0) for slope in (0.3, 5.0, 50.0) for angle in (0.1, 1.5, 2.5)]
 ).T
-
-LOG_SPACING = HALF_DIGITS ** (1 / 3)  # Spacing of a law's table in ln(stress): its cubics err with the fourth power
 
 TINY = math.sqrt(np.finfo(float).tiny)  # Smallest divisor, and lowest rate of a law without a plateau: its square is normal
 
@@ -58,42 +56,36 @@ def rule(points: int) -> tuple[Array, Array]:
 class FlowCurve:
     """Fluidity as a function of the stress, from a table."""
 
-    lowest: float  # Logarithm of the smallest stress of the table
-    log_fluidity: Array  # `ln(x/g)` at even spacings of `ln g`
-    slopes: Array  # Its derivative by `ln g`, constant beyond both ends
+    log_fluidity: Cells  # `ln(x/g)` as a function of `ln g`, which goes on along its tangents
+    ends: tuple[float, float]  # Logarithms of the stresses at which the table ends
     points: int  # Gauss points of the rule on each side of the smallest stress that the law needs
 
     def __call__(self, square: Array) -> tuple[Array, Array]:
         """Return ``x/g`` and the derivative of its logarithm by ``ln g`` at squares of stresses."""
-        place = (0.5 * np.log(np.maximum(square, TINY**2)) - self.lowest) / LOG_SPACING
-        inside = np.nan_to_num(np.clip(place, 0.0, self.slopes.size - 1.000001))  # place is nan where the stress is
-        i = inside.astype(np.intp)
-        t = inside - i
-        y, s = self.log_fluidity, self.slopes * LOG_SPACING
-        left, right, s_left, s_right = y[i], y[i + 1], s[i], s[i + 1]
-        rise = right - left
-        bend, twist = 3 * rise - 2 * s_left - s_right, s_left + s_right - 2 * rise
-        log = left + t * (s_left + t * (bend + t * twist))
-        slope = (s_left + t * (2 * bend + 3 * t * twist)) / LOG_SPACING
-        log += (place - inside) * (LOG_SPACING * slope)
-        return np.exp(log), slope
+        place = 0.5 * np.log(np.maximum(square, TINY**2))
+        inside = np.nan_to_num(np.clip(place, *self.ends))  # place is nan where the stress is
+        log, slope = self.log_fluidity.with_slope(inside)
+        return np.exp(log + (place - inside) * slope), slope
 
 
 @lru_cache(maxsize=32)
 def flow_curve(law: Any) -> FlowCurve:
     """Return the flow curve of a :class:`RateLaw`; fits and sweeps ask for many."""
+
+    def log_fluidity(log_stress: Array) -> Array:
+        stress = np.exp(log_stress)
+        return np.asarray(np.log(law.rate(stress) / stress))
+
     # Below a plateau the viscosity is constant to the square of the rate.
-    ends = np.array([law.plateau * HALF_DIGITS if law.plateau > 0 else TINY, 1 / EPSILON])
-    lowest, highest = np.log(law.stress(ends))
-    stress = np.exp(lowest + LOG_SPACING * np.arange(int((highest - lowest) / LOG_SPACING) + 2))
-    rate = law.rate(stress)
-    log_fluidity, slopes = np.log(rate / stress), stress / (rate * with_slope(law.stress, rate)[1]) - 1
+    rates = np.array([law.plateau * HALF_DIGITS if law.plateau > 0 else TINY, 1 / EPSILON])
+    ends = float(np.log(law.stress(rates[0]))), float(np.log(law.stress(rates[1])))
+    table = Cells.of(log_fluidity, *ends, math.ceil((ends[1] - ends[0]) / MIN_LOG_STEP), LEAST_DEGREE + 1)
     slip, wall, angle = SAMPLE_STATES
     slope = 2 * law.stress(wall) * np.stack([np.cos(angle), np.sin(angle)])
     slip = np.stack([slip, np.zeros_like(slip)])
 
     def with_points(points: int) -> FlowCurve:
-        return FlowCurve(float(lowest), log_fluidity, slopes, points)
+        return FlowCurve(table, ends, points)
 
     def carried(points: int) -> Array:
         return _solved(law, with_points(points), slope, slip).carried
