@@ -19,7 +19,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 import scipy
-from numpy.polynomial import chebyshev, legendre
+from numpy.polynomial import legendre
 
 from stribeck._types import Array
 from stribeck.fluids.flow_factors import MIN_FLOW_FACTOR, OfGaussianSurfaces, add_floor, nominal_separation
@@ -30,18 +30,15 @@ __all__ = ["PERCOLATION", "EffectiveMedium"]
 # Mean gap over the roughness at which half of the surfaces touch and the last path of the fluid closes.
 PERCOLATION = 1 / math.sqrt(2 * math.pi)
 
-# Separations over the roughness between which the width of the medium is tabulated.
-TABLE_EDGES = (0.0, 0.05, 0.15, 0.4, 1.0, 2.0, 3.5, 6.0)
-
-TABLE_COEFFICIENTS = 16  # Chebyshev coefficients of the width between two edges.
-
 MAX_HEIGHT = 9.0  # Height over the roughness above which a Gaussian surface has nothing in double precision.
 
 MIN_GAP_ABOVE_PERCOLATION = 1e-5  # Least tabulated gap above the threshold over the roughness; the flow is at its floor there.
 MAX_GAP_ABOVE_PERCOLATION = 1e9  # Largest tabulated gap above the threshold over the roughness; the walls are smooth there.
 
-FACTOR_CELLS = 8192  # Cells of the table of the flow factor in the logarithm of the gap; the table errs by 4e-12.
-FACTOR_TERMS = 4  # Coefficients of the polynomial on each cell of that table.
+NODES_PER_PANEL = 12  # Gauss points of a panel of the widths.
+MAX_STEPS, STEP_TOLERANCE = 60, 1e-12  # Steps of the width of the medium, and the last one in its logarithm.
+
+FACTOR_CELLS, FACTOR_TERMS = 256, 9  # Cells of the flow factor in the logarithm of the gap, and coefficients on each.
 
 
 @dataclass(frozen=True)
@@ -99,15 +96,26 @@ class EffectiveMedium(OfGaussianSurfaces):
 
 
 def medium_width(d: Array) -> Array:
-    """Return the width e of the medium at the separation d of the mean planes, both over the roughness."""
-    inner, outer = _tables()
-    found = np.zeros_like(d)
-    for left, right, coefficients in zip(TABLE_EDGES[:-1], TABLE_EDGES[1:], inner, strict=True):
-        here = (d > left) & (d <= right)
-        found[here] = chebyshev.chebval((2 * d[here] - left - right) / (right - left), coefficients)
-    far = d > TABLE_EDGES[-1]
-    found[far] = d[far] * chebyshev.chebval(2 * (TABLE_EDGES[-1] / d[far]) ** 2 - 1, outer)
-    return found
+    """Return the width e of the medium at separations d > 0 of the mean planes, both over the roughness."""
+    # By Newton's method in the logarithm of e, which is near d, on panels of the heights that are densest where widths are e.
+    nodes, weights = legendre.leggauss(NODES_PER_PANEL)
+    log_e, lowest = np.log(d), np.maximum(-d, -MAX_HEIGHT)[:, None]
+    for _ in range(MAX_STEPS):
+        e = np.exp(log_e)[:, None]
+        near = e * 2.0 ** np.arange(-6, 10) - d[:, None]
+        edges = np.hstack([near, np.tile((-MAX_HEIGHT, -3.0, 0.0, 3.0, MAX_HEIGHT), (d.size, 1))])
+        edges = np.sort(np.clip(edges, lowest, MAX_HEIGHT), axis=1)
+        half, middle = 0.5 * np.diff(edges)[..., None], 0.5 * (edges[:, 1:] + edges[:, :-1])[..., None]
+        z = middle + half * nodes
+        mass = half * weights * np.exp(-0.5 * z**2) / math.sqrt(2 * math.pi)
+        part = 1 / (1 + ((d[:, None, None] + z) / e[..., None]) ** 3)
+        # Widths of zero have the part one.
+        excess = 1 - 2 * (scipy.special.ndtr(-d) + (mass * part).sum(axis=(1, 2)))
+        step = excess / (6 * (mass * part * (1 - part)).sum(axis=(1, 2)))
+        log_e += np.clip(step, -1.0, 1.0)
+        if np.abs(step).max() < STEP_TOLERANCE:
+            break
+    return np.asarray(np.exp(log_e))
 
 
 @lru_cache(maxsize=1)
@@ -122,52 +130,3 @@ def _factor_table() -> Cells:
     return Cells.of(
         factor, math.log(MIN_GAP_ABOVE_PERCOLATION), math.log(MAX_GAP_ABOVE_PERCOLATION), FACTOR_CELLS, FACTOR_TERMS
     )
-
-
-@lru_cache(maxsize=1)
-def _tables() -> tuple[list[Array], Array]:
-    """Chebyshev coefficients of e between :data:`TABLE_EDGES`, and of e/d in 1/d**2 beyond."""
-    points = chebyshev.chebpts1(TABLE_COEFFICIENTS)[::-1]
-    inner = [
-        _fitted(points, _widths(0.5 * (left + right) + 0.5 * (right - left) * points))
-        for left, right in zip(TABLE_EDGES[:-1], TABLE_EDGES[1:], strict=True)
-    ]
-    far = TABLE_EDGES[-1] * (0.5 * (1 + points)) ** -0.5
-    return inner, _fitted(points, _widths(far) / far)
-
-
-def _fitted(points: Array, values: Array) -> Array:
-    """Return the Chebyshev coefficients of a polynomial through values."""
-    return np.asarray(chebyshev.chebfit(points, values, TABLE_COEFFICIENTS - 1), dtype=np.float64)
-
-
-def _widths(separations: Array) -> Array:
-    """Return the widths of the medium at falling or rising separations, each found from the last."""
-    found, start = [], 1.0
-    for d in separations.tolist():
-        start = _width(d, start * d)
-        found.append(start)
-        start /= d
-    return np.array(found)
-
-
-def _width(d: float, start: float) -> float:
-    """Return the width of the medium at one separation > 0, by Newton's method in its logarithm."""
-    nodes, weights = legendre.leggauss(20)
-    log_e = math.log(start)
-    for _ in range(100):
-        e = math.exp(log_e)
-        low, high = max(d - MAX_HEIGHT, 0.0), d + MAX_HEIGHT
-        edges = np.unique(np.clip(np.append(e * 2.0 ** np.arange(-6, 7), [low, high, d, d - 3, d + 3]), low, high))
-        half = 0.5 * np.diff(edges)
-        u = (0.5 * (edges[1:] + edges[:-1]))[:, None] + half[:, None] * nodes
-        mass = half[:, None] * weights * np.exp(-0.5 * (u - d) ** 2) / math.sqrt(2 * math.pi)
-        part = e**3 / (u**3 + e**3)
-        # Widths of zero have the part one.
-        excess = 1 - 2 * (float(scipy.special.ndtr(-d)) + float((mass * part).sum()))
-        slope = -2 * float((mass * 3 * part * (1 - part)).sum())
-        step = max(-1.0, min(1.0, -excess / slope))
-        log_e += step
-        if abs(step) < 1e-14:
-            break
-    return math.exp(log_e)
