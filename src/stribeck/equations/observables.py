@@ -95,9 +95,7 @@ def observables(equations: Equations, y: Array, load: float) -> Observables:
     found |= {name: float(value[0]) for name, value in measured(equations, u, load).items()}
     found["minimum_position"], found["minimum_gap"] = minimum_of(equations, y)
     found["central_gap"] = float(gap_beside(mesh, u.gap, coordinate(u, 0.0))[0])
-    values = (found[each.name] for each in fields(Observables))
-    # One nan for all that a film has not, so that equal observables compare as such.
-    return Observables(*(math.nan if math.isnan(value) else value for value in values))
+    return Observables(**{each.name: found[each.name] for each in fields(Observables)})
 
 
 def minimum_of(equations: Equations, y: Array) -> tuple[float, float]:
