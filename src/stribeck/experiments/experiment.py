@@ -143,23 +143,7 @@ class Prediction(Exported, Told):
 
 
 def load_experiment(folder: PathLike) -> Experiment:
-    """Read an experiment from its folder.
-
-    Parameters
-    ----------
-    folder : str or path-like
-        A folder with ``experiment.toml`` and the table that it names; see docs/experiments.md for the format.
-
-    Returns
-    -------
-    Experiment
-        The experiment, checked.
-
-    Raises
-    ------
-    InputError
-        Where a file is missing or wrong, or an input has no source or no error.
-    """
+    """Return the experiment of a folder with ``experiment.toml`` and the table that it names (docs/experiments.md)."""
     path = path_of(folder)
     if not path.is_dir():
         raise InputError(f"folder = {show(str(path))} is no folder; give the one that holds {FILE}.")
@@ -207,35 +191,11 @@ def load_experiment(folder: PathLike) -> Experiment:
 
 
 def predict_experiment(experiment: Experiment, model: str, on_state: Callable[[int, int], object] | None = None) -> Prediction:
-    r"""Predict an experiment by one of its models, without a fit.
+    r"""Return what one of the models of an experiment predicts without a fit, and the errors of prediction and measurement.
 
     .. math:: \sigma^2 = \sigma_0^2 + \sum_k \big(\ln y(x_k (1 + \epsilon_k)) - \ln y(x)\big)^2
 
-    Parameters
-    ----------
-    experiment : Experiment
-        The experiment.
-    model : str
-        Name of the model.
-    on_state : callable, optional
-        Called with the number of states that are solved, and of all.
-
-    Returns
-    -------
-    Prediction
-        Predicted and measured friction, with the errors of both.
-
-    Raises
-    ------
-    InputError
-        Where the tables are no contact.
-    SolveError
-        Where a state cannot be solved.
-
-    Notes
-    -----
-    Each input is changed by its standard error; those without one are named.  The tolerance of the solver, 1e-6 and 1e-3 of a
-    ball, is added.
+    with :math:`\sigma_0` the tolerance of the solver and each input changed by its standard error; those without are named.
     """
     inputs = [each for each in experiment.inputs[model] if each.error]
     varied = {key for row in experiment.varied for key in row} - experiment.own[model]
