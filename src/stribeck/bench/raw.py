@@ -81,7 +81,7 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
         lambda meaning: has_column(table, own, meaning) if meaning != "friction" else _uses_coefficient(table, own),
         signed=True,
     )
-    columns = columns_of(table, replace(settings, columns=own.columns))
+    columns = columns_of(table, settings)
     if "speed" not in columns:
         raise InputError(
             f"{table.path}: {show(next(iter(columns.values()))[0])} is no speed; a series needs a column of speed."

@@ -12,11 +12,10 @@ import numpy as np
 from stribeck.bench.passes import RUN_IN, Pass, Series, directions, passes_of
 from stribeck.bench.points import Point, points_of, run_in_of
 from stribeck.bench.raw import Raw, read_raw
-from stribeck.bench.result import BenchCurve
+from stribeck.bench.result import INPUTS, BenchCurve
 from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import FitSettings, with_bench_keys
 from stribeck.cases.reading import load_rig
-from stribeck.contacts.geometries import INPUT_TABLES
 from stribeck.fits.measurements import files_of
 from stribeck.fluids.presets import PRESETS, Preset
 from stribeck.quantities.formats import format_si
@@ -184,8 +183,7 @@ def _labels(curves: Sequence[tuple[str, dict[str, float]]]) -> tuple[str, ...]:
     for name, inputs in curves:
         alike = [each for other, each in curves if other == name]
         differing = [key for key in inputs if len({each.get(key) for each in alike}) > 1]
-        rows = INPUT_TABLES["point"].rows | {"load_per_length": INPUT_TABLES["line"].rows["load"]}
-        texts = [f"{key.replace('_', ' ')} {format_si(inputs[key], rows[key].dimension)}" for key in differing]
+        texts = [f"{key.replace('_', ' ')} {format_si(inputs[key], INPUTS[key].dimension)}" for key in differing]
         found.append(", ".join(filter(None, [name, *texts])))
     return tuple(found)
 

@@ -10,7 +10,8 @@ from typing import Annotated, Any
 import numpy as np
 
 from stribeck._types import Array, Indices
-from stribeck.contacts.geometries import POINT
+from stribeck.contacts.geometries import LINE, POINT
+from stribeck.contacts.parts import LAW_NUMBERS
 from stribeck.files.datasets import Column, write_columns
 from stribeck.files.results import UNWRITTEN, WRITTEN, Exported, Labelled
 from stribeck.files.writing import PathLike
@@ -19,16 +20,10 @@ from stribeck.quantities.docstrings import told
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.results import ByValue, Card, Told
 from stribeck.quantities.standard_errors import INTERVAL_95
+from stribeck.quantities.units import DIMENSIONS
 
-# Headers of inputs in the file; those of others are their names.
-HEADERS = {
-    "load": "load [N]",
-    "load_per_length": "load [N/m]",
-    "viscosity": "viscosity [Pa*s]",
-    "roughness": "roughness [m]",
-    "radius": "radius [m]",
-    "modulus": "modulus [Pa]",
-}
+# What files may say of the contact: a rig measures forces, and a case may have a load per length
+INPUTS = LAW_NUMBERS | POINT.rows | {"load_per_length": LINE.rows["load"]}
 
 
 # What each point has beside its curve; the other numbers are of rows.
@@ -120,11 +115,8 @@ class BenchCurve(Exported, Told, ByValue):
         """Return points, notes and inputs, ready for JSON."""
         columns = {name: getattr(self, name).tolist() for name in (*POINTS, "error")}
         of = {"paths": list(self.paths), "curves": list(self.curves), "inputs": list(self.inputs)}
-        units = {name: row.unit or "1" for name, row in POINT.quantities.items() for each in self.inputs if name in each}
+        units = {name: INPUTS[name].unit for each in self.inputs for name in each} | {"error": "1"}
         units |= {name: each.unit for name, each in self._words.items() if name in POINTS and each.unit is not None}
-        units |= {"error": "1"} | (
-            {"load_per_length": "N/m"} if any("load_per_length" in each for each in self.inputs) else {}
-        )
         told = {"notes": list(self.notes), "units": units}
         return of | {"curve": [self.curves[k] for k in self.curve]} | columns | told
 
@@ -173,7 +165,9 @@ class BenchCurve(Exported, Told, ByValue):
         if np.isfinite(self.half_width).any():
             columns["error"] = cells(self.error, 4)
         for name in sorted(given):
-            columns[HEADERS.get(name, name)] = cells(np.array([self.inputs[k].get(name, math.nan) for k in self.curve]))
+            unit = DIMENSIONS[INPUTS[name].dimension].unit
+            header = f"{INPUTS[name].name} [{unit}]" if unit else name
+            columns[header] = cells(np.array([self.inputs[k].get(name, math.nan) for k in self.curve]))
         columns["rows"], columns["independent rows"] = list(map(str, self.rows)), cells(self.independent, 4)
         for name, values in (("direction difference", self.difference), ("direction difference SE", self.difference_error)):
             if np.isfinite(values).any():

@@ -13,7 +13,7 @@ from stribeck.contacts.geometries import LINE
 from stribeck.files.cells import is_named, normalised_header, number_of, split_header
 from stribeck.files.columns import BARE, has_dimension
 from stribeck.files.text_table import TextTable, as_comparable
-from stribeck.fits.rig import MADE_RATIO, MADE_SPEED, PATTERNS, RIG, is_mean_of_time
+from stribeck.fits.rig import MADE_RATIO, MADE_SPEED, PATTERNS, is_mean_of_time
 from stribeck.fits.values import (
     ABSCISSAS,
     MADE_FRICTION,
@@ -101,7 +101,7 @@ def columns_of(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
     """Return what is in the file -> headers of its columns."""
     found: dict[str, list[str]] = {}
     for meaning in settings.columns:
-        if meaning in RIG:
+        if meaning in PATTERNS:
             continue
         found[meaning] = named_in_case(table, settings, meaning, WORDS["error"])
         for name in found[meaning]:

@@ -372,7 +372,13 @@ def _check_entries(paths: Sequence[Path], settings: FitSettings) -> None:
 def _joined(read: Sequence[Measurements], settings: FitSettings) -> Measurements:
     """Return the curves of several files as one set."""
     first = read[0]
-    _check_same(read, "abscissa", [each.abscissa.replace("_", " ") for each in read], "friction over")
+    for each in read:
+        if each.abscissa != first.abscissa:
+            over, other = (one.abscissa.replace("_", " ") for one in (first, each))
+            raise InputError(
+                f"{first.path or 'the first data'} has friction over {over}, and {each.path or 'another'} over {other}; files "
+                "that are fitted together must have the same."
+            )
     names = _labels(read)
     curves, inputs, of_curve, numbers = list[str](), list[dict[str, Any]](), list[str](), list[Any]()
     for name, each in zip(names, read, strict=True):
@@ -396,15 +402,6 @@ def _joined(read: Sequence[Measurements], settings: FitSettings) -> Measurements
         run_in=tuple(row for each in read for row in each.run_in),
         files=tuple(of_curve),
     )
-
-
-def _check_same(read: Sequence[Measurements], name: str, values: Sequence[str], what: str) -> None:
-    for each, value in zip(read, values, strict=True):
-        if value != values[0]:
-            raise InputError(
-                f"{read[0].path or 'the first data'} has {what} {values[0]}, and {each.path or 'another'} over {value}; files "
-                "that are fitted together must have the same."
-            )
 
 
 def _labels(read: Sequence[Measurements]) -> list[str]:

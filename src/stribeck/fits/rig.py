@@ -23,12 +23,6 @@ from stribeck.fits.repeats import FEWEST
 from stribeck.fits.values import MADE_FRICTION, dimension_of, is_set, named_in_case, numbers, undeclared, unit_in
 from stribeck.quantities.units import InputError, listed, show
 
-# What a column of a rig may be beside those of a friction curve.
-RIG = (
-    *("entrainment_speed", "sliding_speed", "surface_speeds", "slide_to_roll", "rotation"),
-    *("friction_force", "normal_force", "torque", "run"),
-)
-
 UNITLESS = ("slide_to_roll", "run")  # Those without a unit, but for per cent
 
 FORCES = frozenset({"friction_force", "torque"})
@@ -42,7 +36,7 @@ _BODY = (
 )
 _TURNS = rf"(?:(?:(?:rotation(?:al)?|rotary|angular) )?{_SPEED}|rpm|rotation|drehzahl|rotational frequency)"
 
-# What the words of a header mean, in lower case.
+# What a column of a rig may be beside those of a friction curve, and the words of its header, in lower case.
 PATTERNS = {
     "entrainment_speed": rf"(?:mean|average)(?: (?:entrain\w*|rolling|surface))? {_SPEED}|"
     rf"(?:entrain\w*|rolling)(?: \w+)? {_SPEED}|{_SPEED} (?:mean|rolling)",
@@ -216,7 +210,7 @@ def _levels(values: Array) -> Array:
 
 def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
     """Return what is in the table -> headers of its columns; those of the settings first, set values after measured ones."""
-    found = {meaning: named_in_case(table, settings, meaning) for meaning in settings.columns if meaning in RIG}
+    found = {meaning: named_in_case(table, settings, meaning) for meaning in settings.columns if meaning in PATTERNS}
     for name in dict.fromkeys(undeclared(table, settings)):
         for meaning, pattern in PATTERNS.items():
             if meaning in settings.columns or not is_named(name, pattern):
