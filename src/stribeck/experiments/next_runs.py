@@ -159,7 +159,9 @@ def next_runs(
     prices = DEFAULT_COST | dict(cost or {})
     if set(prices) != set(DEFAULT_COST) or min(prices.values()) < 0 or prices["point"] <= 0:
         raise InputError(f"cost = {show(cost)}; it may hold {', '.join(DEFAULT_COST)}, each zero or positive, point positive.")
-    information, noise = _information_and_noise(fit)
+    information, inflation, _ = information_of(fit._minimum)
+    information = information / inflation + np.eye(len(fit.inputs)) / PRIOR_LOG_ERROR**2
+    noise = float(np.median(fit._minimum.relative_noise)) * math.sqrt(inflation)  # of a row, as the fit judges it
     places = _places(fit, speeds, loads, viscosities)
     rows: list[tuple[str, Contact, Array, float]] = []
     for i, (curve, contact) in enumerate(places):
@@ -194,13 +196,6 @@ def next_runs(
         known.add((run.load, run.viscosity))
     dimension = fit.contacts[0].INPUTS.quantities["load"].dimension
     return Plan(tuple(chosen), before, noise, scanned, dimension)
-
-
-def _information_and_noise(fit: Fit) -> tuple[Array, float]:
-    """Return the information on the logarithms of the inputs, and the relative standard error of a row, as the fit judges."""
-    information, inflation, _ = information_of(fit._minimum)
-    noise = float(np.median(fit._minimum.relative_noise)) * math.sqrt(inflation)
-    return information / inflation + np.eye(len(fit.inputs)) / PRIOR_LOG_ERROR**2, noise
 
 
 def _places(

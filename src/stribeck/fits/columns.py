@@ -248,8 +248,10 @@ def _ask_for_columns(table: TextTable, found: dict[str, list[str]]) -> None:
         "friction": [name for name in unknown if table.unit(name) in BARE and _may_be_friction(table, name)],
     }
     if "friction" in missing and not examples["friction"]:
-        forces = [name for name in table.written if _is_force(name)]
-        if forces:
+        of_forces = (
+            is_named(name, PATTERNS["friction_force"]) or split_header(name)[1] in ("N", "mN") for name in table.written
+        )
+        if any(of_forces):
             raise InputError(
                 f"{table.path}: {listed(table)}, none of which is a friction coefficient; a force is none: add a column "
                 "friction, the friction force over the normal force."
@@ -272,10 +274,6 @@ def _ask_for_columns(table: TextTable, found: dict[str, list[str]]) -> None:
 
 def _alike(meaning: str) -> tuple[str, ...]:
     return ABSCISSAS if meaning == "speed" else (meaning,)
-
-
-def _is_force(name: str) -> bool:
-    return is_named(name, PATTERNS["friction_force"]) or split_header(name)[1] in ("N", "mN")
 
 
 def _may_be_friction(table: TextTable, name: str) -> bool:

@@ -104,13 +104,12 @@ def _described(
     if len(part) == 1:
         message = f"{names[0]} cannot be determined from these data: {_reason(free[part[0]], prediction)}."
     else:
-        ties = [_tie(names[0], names[j], exponents[0], exponents[j]) for j in range(1, len(part))]
+        ties = [product_text(names[0], names[j], -exponents[0] / exponents[j]) for j in range(1, len(part))]
         how = "does not change" if exact else "hardly changes"
-        reasons = [
-            f"{labels[i]}: {_reason(free[i], prediction)}"
-            for i in part
-            if _weak_alone(jacobian[:, i]) or _off_plateau(free[i], prediction)
-        ]
+        # Those that no row determines by itself: the size of the friction of asperities needs a boundary plateau.
+        is_off_plateau = float(prediction.contact_share.max()) < 0.5
+        alone = [i for i in part if np.linalg.norm(jacobian[:, i]) * WIDEST < 1 or (free[i].name in SIZES and is_off_plateau)]
+        reasons = [f"{labels[i]}: {_reason(free[i], prediction)}" for i in alone]
         because = f" ({'; '.join(reasons)})" if reasons else ""
         message = (
             f"{listed(names)} cannot be determined separately: the predicted friction {how} when {_changed(names, exponents)}"
@@ -119,20 +118,10 @@ def _described(
     return Unidentifiable(names, exponents, error, message)
 
 
-def _weak_alone(column: Array) -> bool:
-    return float(np.linalg.norm(column)) * WIDEST < 1
-
-
-def _off_plateau(free: FreeInput, prediction: Prediction) -> bool:
-    """Return whether no row determines the size of the friction of asperities by itself."""
-    return free.name in SIZES and float(prediction.contact_share.max()) < 0.5
-
-
-def _tie(first: str, other: str, a: float, b: float) -> str:
-    """Return the combination of two inputs that does not change along the direction (a, b)."""
-    power = a / b
+def product_text(first: str, other: str, power: float) -> str:
+    """Return the product of an input and a power of another in words."""
     size = "" if abs(abs(power) - 1) < 0.02 else f"^{abs(power):.2g}"
-    return f"{first} {'/' if power > 0 else 'x'} {other}{size}"
+    return f"{first} {'x' if power > 0 else '/'} {other}{size}"
 
 
 def _changed(names: Sequence[str], exponents: Sequence[float]) -> str:

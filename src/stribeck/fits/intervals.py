@@ -112,24 +112,15 @@ def ends_of(
     for _ in range(RESTARTS):
         try:
             finite = np.where(np.isfinite(covariance), covariance, 0.0)
-            nothing = [(-math.inf, math.inf)] * len(thresholds)
-            ends = [
-                nothing if lost else _profile_ends(found, i, finite, thresholds, lambda: report("intervals"))
-                for i, lost in enumerate(np.isinf(np.diag(covariance)).tolist())
-            ]
-            return np.array(ends), found
+            ends = np.full((len(found.theta), len(thresholds), 2), (-math.inf, math.inf))
+            for i in np.flatnonzero(~np.isinf(np.diag(covariance))).tolist():
+                for side, sign in enumerate((-1.0, 1.0)):
+                    ends[i, :, side] = _side(found, i, sign, finite, thresholds, lambda: report("intervals"))
+            return ends, found
         except _BetterMinimumError as better:
             found = settle(found.objective, better.theta, lambda: report("fitting"))
             covariance, _, _ = covariance_of(found)
     return ends_of(replace(found, ended=False), covariance, quantiles, inflation, False, report)
-
-
-def _profile_ends(
-    at: Minimum, i: int, covariance: Array, thresholds: list[float], on_point: Callable[[], object]
-) -> list[tuple[float, float]]:
-    """Return the ends of the intervals of one free input."""
-    below, above = (_side(at, i, sign, covariance, thresholds, on_point) for sign in (-1.0, 1.0))
-    return list(zip(below, above, strict=True))
 
 
 def _side(

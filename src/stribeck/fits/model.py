@@ -91,20 +91,17 @@ class FrictionModel:
         # Of each curve: a faster cylinder drags the substrate along.  What is measured is a size.
         self.signs = np.array([math.copysign(1.0, self._rubbing(each)) for each in self.contacts])
         still = np.zeros(len(self.free))
-        self.moving = tuple(self._moving(curve, still) for curve in range(len(data.curves)))
-
-    @property
-    def in_atlas(self) -> bool:
-        """Whether a table holds for all contacts, wherever in its box their states lie."""
-        kinds = {each.groups.model for each in self.contacts}
-        is_held = len(kinds) == 1 and self.is_constant and not any(self.moving)
-        return is_held and atlas.for_groups(self.contact.groups) is not None
+        # Of each curve: the free inputs on which its model depends at fixed groups.
+        self.moving = tuple(tuple(self._changes(curve, still, range(len(self.free)))) for curve in range(len(data.curves)))
 
     def states(self, definition: Definition, rtol: float, on_state: Callable[[], object]) -> States:
         """Return what gives the states, to a tolerance."""
         moves = np.abs(self.exponents[:, :, :3]).max(axis=(0, 1)) > 0
         by = tuple(name for name, is_moved in zip(GROUPS, moves, strict=True) if is_moved)
-        return States(self.contact, by, self.in_atlas, definition, rtol, on_state)
+        # Whether a table holds for all contacts, wherever in its box their states lie.
+        is_one = len({each.groups.model for each in self.contacts}) == 1 and self.is_constant and not any(self.moving)
+        in_atlas = is_one and atlas.for_groups(self.contact.groups) is not None
+        return States(self.contact, by, in_atlas, definition, rtol, on_state)
 
     def count_states(self, rtol: float) -> int:
         """Return how many states are solved for all rows at one place."""
@@ -124,10 +121,6 @@ class FrictionModel:
     def rule(self) -> FrictionRule:
         """What friction is made of, found by name, so that fits can be pickled."""
         return RULES[self.contact.groups.geometry]
-
-    def _moving(self, curve: int, theta: Array) -> tuple[int, ...]:
-        """Return the free inputs on which the model of a curve depends at fixed groups."""
-        return tuple(self._changes(curve, theta, range(len(self.free))))
 
     def _changes(self, curve: int, theta: Array, of: Iterable[int], speed: float | None = None) -> Changes:
         """Return what each of some free inputs changes of the model of a curve, those that change nothing left out."""
@@ -259,7 +252,7 @@ class FrictionModel:
         )
 
     def read(self, theta: Array, definition: Definition) -> Array:
-        """Return the friction of all rows at many places at once, off the atlas, see :attr:`in_atlas`."""
+        """Return the friction of all rows at many places at once, off the atlas."""
         x = np.exp(self.logs + np.einsum("mp,npk->mnk", theta, self.exponents[self.data.curve]))
         physics = self.contact.groups.physics
         inside = atlas.covers(Groups(x[..., 0], x[..., 1], x[..., 2], **physics)).all(axis=1)

@@ -20,7 +20,7 @@ from stribeck.contacts.geometries import LINE
 from stribeck.contacts.inputs import InputTable, follows_surface
 from stribeck.files.datasets import Column, listed, units_of
 from stribeck.files.results import Exported, Labelled, Record, columns_of_records
-from stribeck.fits.diagnosis import Quality, Unidentifiable
+from stribeck.fits.diagnosis import Quality, Unidentifiable, product_text
 from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.least_squares import Minimum
 from stribeck.fits.measurements import Measurements
@@ -453,8 +453,7 @@ def _combination(pair: tuple[str, str], correlation: float, covariance: Array) -
     first, second = pair if abs(a) >= abs(b) else pair[::-1]
     power = float(min(a, b, key=abs) / max(a, b, key=abs))
     size = float(math.sqrt(max(values[0], 0.0)) / max(abs(a), abs(b)))
-    shown = "" if abs(abs(power) - 1) < 0.02 else f"^{abs(power):.2g}"
     return (
         f"{pair[0]} and {pair[1]} have correlation {correlation:.3f}: the data determine "
-        f"{first} {'x' if power > 0 else '/'} {second}{shown} best, within {100 * size:.2g} %."
+        f"{product_text(first, second, power)} best, within {100 * size:.2g} %."
     )

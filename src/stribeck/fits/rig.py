@@ -150,13 +150,6 @@ def temperature_note(table: TextTable) -> tuple[str, ...]:
     return (f"Temperature by {show(found[1])}: {said}; the viscosity of the case must be that at this temperature.",)
 
 
-def _temperature_columns(table: TextTable) -> list[str]:
-    """Return the columns of temperatures, that of the liquid first."""
-    names = [name for name in table.written if name in table.header and table.unit(name) in TEMPERATURES]
-    nearest = ("lub|oil|fluid|öl", "pot|bath|sample", "")
-    return sorted(names, key=lambda name: [re.search(each, normalised_header(name)) is None for each in nearest])
-
-
 def _levelled(
     table: TextTable, name: str, meaning: str, made: str, settings: FitSettings
 ) -> tuple[TextTable, tuple[str, ...]]:
@@ -263,7 +256,10 @@ def measured(table: TextTable, meaning: str, settings: FitSettings) -> Array | N
 
 def temperatures(table: TextTable) -> tuple[Array, str] | None:
     """Return the temperatures [degC] of a column, that of the liquid if there are several, and its header; None if none."""
-    for name in _temperature_columns(table):
+    names = [name for name in table.written if name in table.header and table.unit(name) in TEMPERATURES]
+    nearest = ("lub|oil|fluid|öl", "pot|bath|sample", "")
+    names.sort(key=lambda name: [re.search(each, normalised_header(name)) is None for each in nearest])
+    for name in names:
         values = table.values(name)
         if np.isfinite(values).any():
             zero, factor = TEMPERATURES[table.unit(name)]

@@ -25,7 +25,7 @@ from stribeck.quantities.outputs import COLUMNS
 from stribeck.quantities.results import ByValue, Card, Told
 from stribeck.quantities.units import InputError, checked_callback, show
 from stribeck.sweeps.design import SweepDesign, load_sweep
-from stribeck.sweeps.store import ERROR, PENDING, Store, claimed_store, read_store, row_of
+from stribeck.sweeps.store import ERROR, PENDING, claimed_store, read_store, row_of
 
 if TYPE_CHECKING:
     import xarray
@@ -256,7 +256,10 @@ def sweep(
 
         def report_progress() -> None:
             if on_progress is not None:
-                on_progress(_progress_of(store, time.monotonic() - began))
+                seconds, done = time.monotonic() - began, store.found + store.computed
+                rate = store.computed / seconds if seconds > 0 else 0.0
+                left = (store.total - done) / rate if rate > 0 else math.inf
+                on_progress(SweepProgress(done, store.total, store.failed, rate, left))
 
         execute: Executor = partial(solve_on_processes, workers) if workers > 1 else solve_here
         execute = execute if scheduler is None else partial(solve_on_cluster, scheduler)
@@ -265,8 +268,3 @@ def sweep(
         raise SweepError("The run ended without an error, but states are missing; please report it.")
     seconds, found = time.monotonic() - began, open_sweep(store.path)
     return replace(found, interrupted=interrupted, computed=store.computed, seconds=seconds, note=store.note)
-
-
-def _progress_of(store: Store, seconds: float) -> SweepProgress:
-    done, rate = store.found + store.computed, store.computed / seconds if seconds > 0 else 0.0
-    return SweepProgress(done, store.total, store.failed, rate, (store.total - done) / rate if rate > 0 else math.inf)

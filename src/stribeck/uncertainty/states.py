@@ -208,7 +208,10 @@ def _sampled_until_confirmed(
     # what was read there, and reads anew.
     middle = np.zeros(places.shape[1])
     start, some = solved(middle), len(middle) + 1
-    lengths = _lengths(start)
+    size = np.ones_like(start.values)
+    size[0] = math.inf  # the share of the fluid tells it
+    size[VISCOUS] = abs(start.values[VISCOUS]) or 1.0
+    lengths = lengths_of(start.slopes / size)
     known, random = [(middle, start)], np.random.default_rng(SEED)
     tried = np.zeros(len(places), dtype=bool)
     while True:
@@ -237,14 +240,6 @@ def _sampled_until_confirmed(
         if wrong <= INTERVAL_END_RTOL * width or tried.sum() + 3 * some > MAX_SOLVED_SAMPLES:
             found = _read(known, places, lengths, logs)
             return found, _interval_notes(wrong / width if width else 0.0, int(tried.sum()), len(known) - 1)
-
-
-def _lengths(state: State) -> Array:
-    """Return how far inputs move until a state changes by its own size, at most one."""
-    size = np.ones_like(state.values)
-    size[0] = math.inf  # the share of the fluid tells it
-    size[VISCOUS] = abs(state.values[VISCOUS]) or 1.0
-    return lengths_of(state.slopes / size)
 
 
 def _read(known: Sequence[tuple[Array, State]], places: Array, lengths: Array, logs: Sequence[str]) -> dict[str, Array]:
