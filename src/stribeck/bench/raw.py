@@ -105,8 +105,7 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
     notes = [*table.notes, *table.thousands_noted([names[0] for names in columns.values() if names[0] in written]), *time_note]
     if zero is not None:
         assert load is not None
-        friction = friction - zero.at(np.array(table.numbers, float)) / np.abs(load)
-        notes.append(zero.said)
+        friction = friction - zero / np.abs(load)
     if not there.all():
         missing = [number for number, kept in zip(table.numbers, there, strict=True) if not kept]
         notes.append(f"{len(missing)} row{'s' * (len(missing) > 1)} without a value left out: {rows_listed(missing)}.")
@@ -182,22 +181,8 @@ def _uses_coefficient(table: TextTable, settings: FitSettings) -> bool:
     return not apart.size or float(np.median(apart)) > SAME_FRICTION
 
 
-@dataclass(frozen=True)
-class _Zero:
-    """The friction force while the surfaces are apart."""
-
-    rows: Array  # Mean row of each stretch without load
-    forces: Array  # Mean force there [N]
-    said: str
-
-    def at(self, numbers: Array) -> Array:
-        """Return the zero of the force at rows [N]: between two stretches on the straight line, else that of the nearest."""
-        found: Array = np.interp(numbers, self.rows, self.forces)
-        return found
-
-
-def _zero_of_force(table: TextTable, settings: FitSettings) -> tuple[TextTable, _Zero | None]:
-    """Return the table without rows in which the surfaces are apart, and the zero of the force by these rows."""
+def _zero_of_force(table: TextTable, settings: FitSettings) -> tuple[TextTable, Array | None]:
+    """Return the table without rows in which the surfaces are apart, and the zero of the force in the others."""
     load = measured(table, "normal_force", settings)
     if load is None:
         return table, None
@@ -227,7 +212,9 @@ def _zero_of_force(table: TextTable, settings: FitSettings) -> tuple[TextTable, 
         else ""
     )
     said = f"Zero of the force by {int(apart.sum())} rows without load: {texts}, taken off{drift}."
-    return shorter, _Zero(np.array([float(of_rows[each].mean()) for each in stretches]), means, said)
+    # Between two stretches on the straight line, else that of the nearest
+    zero = np.interp(np.array(shorter.numbers, float), [float(of_rows[each].mean()) for each in stretches], means)
+    return replace(shorter, notes=(*shorter.notes, said)), zero
 
 
 def _stretches(rows: Flags) -> list[Indices]:
