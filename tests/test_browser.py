@@ -457,6 +457,11 @@ def test_it_fits_a_phone(open_page):
     now = at_rest(page, lambda: page.touchscreen.tap(box["x"] + 0.7 * box["width"], box["y"] + box["height"] / 2))
     check_numbers(page, now)
     assert now.contact.viscosity > server.example().contact.viscosity
+    for name, text in {"roughness": "134.6 nm", "alpha": "2.236", "beta": "0.04187"}.items():  # for a long name of a pin
+        at_rest(page, lambda name=name, text=text: (field(page, name).fill(text), field(page, name).press("Enter")))
+    at_rest(page, lambda: page.get_by_role("button", name="Pin").click())
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert page.locator(".card.friction").bounding_box()["height"] < 0.61 * 844  # the sliders stay in reach
 
 
 def test_changes_are_undone_and_redone(open_page):
