@@ -90,6 +90,16 @@ def test_errors_of_the_inputs_of_a_ball_become_those_of_friction_and_regime():
     assert (parts["boundary_friction"] / wanted) ** 2 == pytest.approx(found.contributions["boundary_friction"], rel=0.02)
 
 
+def test_the_interval_of_friction_of_a_ball_in_a_drop_lies_around_its_friction():
+    """Friction up to the rim was that of a far film: the interval of this state began above its value."""
+    given = dict(radius=0.01, modulus=2e6, load=0.9, viscosity=0.1, speed=1.1, alpha=2, beta=0.1, boundary_friction=0.5)
+    drop = sb.PointContact(**given, roughness=4.5e-7, wetted_radius=2.25e-3)
+    found = sb.propagate(drop, {"viscosity": 0.1})["friction"]
+    for k, end in zip((-1.96, 1.96), found.interval_95, strict=True):
+        there = drop.replace(viscosity=0.1 * math.exp(k * math.sqrt(math.log1p(0.01))))
+        assert end == pytest.approx(sb.solve(there, rtol=1e-3).friction().total, rel=5e-3)
+
+
 def test_marks_of_a_coarse_curve_are_those_of_a_fine_one():
     near = tuple(BALL.speed * factor for factor in (0.3, 300.0))
     found, fine = (sb.stribeck_curve(BALL, speed=near, points=5, rtol=rtol).transitions for rtol in (3e-3, 1e-3))

@@ -67,7 +67,7 @@ def friction_sensitivities(
         asked = names if own is None else (*names, *WITHIN)
         slopes = neighbours.observed(groups, asked, list(changes.values()), inputs=inputs).slopes
         if own is not None:
-            within = _with_slopes(own, slopes[len(names) :])
+            within = with_slopes(own, slopes[len(names) :])
     parts = [getattr(solution.observables, name) for name in names[1:]]
     values = np.array([asperities.amount(solution)[0], *parts])
     return solution, _sensitivities(contact, definition, values, slopes[: len(names)], [*changes], within)
@@ -123,7 +123,7 @@ def _sensitivities(
     return {name: value / total for name, value in found.items()}
 
 
-def _with_slopes(within: Within, slopes: Array) -> Within:
+def with_slopes(within: Within, slopes: Array) -> Within:
     """Return friction up to a logarithm of the radius that brings its derivatives, given those at a fixed radius."""
 
     def at(which: int, log_radius: Any) -> Any:

@@ -18,7 +18,9 @@ from stribeck.contacts.inputs import follows_surface, typical_errors
 from stribeck.contacts.parts import PART_INPUTS
 from stribeck.curves.coordinate import Over
 from stribeck.curves.regime import Transition
+from stribeck.curves.sensitivities import with_slopes
 from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.equations.point.observables import WITHIN
 from stribeck.numerics.dual import Dual
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.formats import format_si
@@ -224,13 +226,16 @@ def _exponents(solution: Any, inputs: Mapping[str, float], definition: Definitio
     """Return the powers with which beta, motion and liquid enter the viscous friction of a state beside its groups."""
     groups, rule = solution.groups, RULES[solution.groups.geometry]
     parts = {name: float(getattr(solution, name)) for name in rule.parts(definition)}
-    found = {}
-    for name, value in inputs.items():
-        if 0 < value < math.inf and groups.speed > 0:
-            moved = {**inputs, name: Dual(value, value), "far": far_film(groups.model)}
-            here = rule.viscous(parts, groups.speed, groups.load, moved, definition)
-            found[name] = float(here.slope / here.value)
-    return found
+    own = getattr(solution.observables, "_within", None)
+    finite = {name: value for name, value in inputs.items() if 0 < value < math.inf}
+    if not groups.speed > 0:
+        return {}
+    rows = np.eye(len(finite))
+    moved = {name: Dual(value, value * row) for (name, value), row in zip(finite.items(), rows, strict=True)}
+    within = None if own is None else with_slopes(own, np.zeros((len(WITHIN), len(finite))))
+    given = {**inputs, **moved, "far": far_film(groups.model), "within": within}
+    here = rule.viscous(parts, groups.speed, groups.load, given, definition)
+    return dict(zip(finite, (here.slope / here.value).tolist(), strict=True))
 
 
 def _power(contact: Contact, function: Any, move: Mapping[str, float]) -> list[float]:

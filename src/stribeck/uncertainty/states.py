@@ -21,6 +21,8 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import BASE_MODEL, Geometry, Model
 from stribeck.contacts.with_parts import models_at_both_sides
+from stribeck.curves.sensitivities import Within, with_slopes
+from stribeck.equations.point.observables import WITHIN
 from stribeck.numerics.dual import Dual
 from stribeck.numerics.scattered import Scattered, lengths_of
 from stribeck.quantities.formats import format_percent
@@ -89,10 +91,17 @@ class SampledStates:
         """Return the derivatives of the logarithm of the asperities' share, or of what is read as one, along the moves."""
         return np.asarray(state.slopes[:, 0 if name == SHARES[0] else FLUID + 1 + self.logs.index(name)])
 
+    @cached_property
+    def _ends_near(self) -> bool:
+        """Whether friction up to where the liquid ends is that of the film itself."""
+        groups = self.contact.groups
+        inputs = RULES[groups.geometry].of_contact(self.contact)
+        return bool(groups.speed > 0) and not RULES[groups.geometry].is_enough(groups.model, [inputs])
+
     def off_atlas(self, draws: Array) -> dict[str, Array] | None:
         """Return states of standard normal samples off the atlas, None if it does not have them all."""
         groups = self.contact.groups
-        is_held = groups.model == BASE_MODEL and self.logs == films_of(groups.geometry)
+        is_held = groups.model == BASE_MODEL and self.logs == films_of(groups.geometry) and not self._ends_near
         if not is_held or atlas.for_groups(groups) is None:
             return None
         moved = {name: np.asarray(getattr(groups, name)) for name in GROUPS}
@@ -142,7 +151,7 @@ class SampledStates:
             for name, step in move.items()
             if (change := models_at_both_sides(contact, name)) is not None
         ]
-        wanted = (*SHARES, *self.logs, *names)
+        wanted = (*SHARES, *self.logs, *names, *(WITHIN if self._ends_near else ()))
         observed = self.neighbours.observed(groups, wanted, [change for *_, change in changed], inputs=inputs)
         by = dict(zip(wanted, map(Dual, observed.values, observed.slopes), strict=True))
         rows = np.eye(3 + len(changed))
@@ -150,10 +159,13 @@ class SampledStates:
             Dual(float(value), float(value) * row) for value, row in zip((groups.speed, groups.load), rows, strict=False)
         )
 
-        def viscous_of(parts: Mapping[str, Any], speed: Any, load: Any, model: Model) -> Any:
-            return rule.viscous(parts, speed, load, {**inputs, "far": far_film(model)}, self.definition)
+        def viscous_of(parts: Mapping[str, Any], speed: Any, load: Any, model: Model, within: Within | None = None) -> Any:
+            return rule.viscous(parts, speed, load, {**inputs, "far": far_film(model), "within": within}, self.definition)
 
-        viscous = viscous_of({name: by[name] for name in names}, speed, load, groups.model)
+        within = None
+        if self._ends_near:
+            within = with_slopes(self.neighbours.at(groups).within, np.array([by[name].slope for name in WITHIN]))
+        viscous = viscous_of({name: by[name] for name in names}, speed, load, groups.model, within)
         parts = {name: by[name].value for name in names}
         through = np.zeros(3 + len(changed))  # the film far away
         for i, (*_, (below, above, width)) in enumerate(changed, 3):
