@@ -4,8 +4,6 @@ An executor calls, in this process alone, ``keep(rows)`` for states that have en
 twice a second, which may raise KeyboardInterrupt.  No worker outlives the call.
 """
 
-from __future__ import annotations
-
 import multiprocessing
 import os
 import pickle

@@ -1,7 +1,5 @@
 """Arrays of states in one call, of inputs that broadcast as NumPy does, or by the names of their dimensions."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any

@@ -3,8 +3,6 @@
 Parts are steps of steady speed, found by binary segmentation at change points of ln(speed), strokes, ramps and rest.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace

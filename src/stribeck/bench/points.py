@@ -1,7 +1,5 @@
 """Points of a curve by one weighted least squares: friction, force zero, its drift and misalignment (docs/bench.md)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

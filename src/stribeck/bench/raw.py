@@ -1,7 +1,5 @@
 """A rig's file as series in SI units: time, speed and friction with their signs, load and temperature of each row."""
 
-from __future__ import annotations
-
 import datetime
 import math
 import re

@@ -1,7 +1,5 @@
 """Raw files of a rig read into one Stribeck curve, or one for each fluid and load, with the error of each point."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, replace

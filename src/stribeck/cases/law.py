@@ -1,7 +1,5 @@
 """The contact law of a case or sweep file: from its name and the tables that describe the surface."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """The tables of a case file that describe parts of a contact: ``[fluid]``, ``[solid]``, ``[asperity_friction]`` and others."""
 
-from __future__ import annotations
-
 import itertools
 import json
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """The walk over the tables of a file: which keys they may have, what each may hold, and a sentence for each problem."""
 
-from __future__ import annotations
-
 import difflib
 import math
 import re

@@ -1,7 +1,5 @@
 """Checks of the bodies: pressure, stiffness, width, layer, loss."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

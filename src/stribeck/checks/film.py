@@ -1,7 +1,5 @@
 """Checks of the film: suction, shear rate, supply, stroke, molecules, heating, inertia."""
 
-from __future__ import annotations
-
 import math
 
 from stribeck.checks.check import Check, Verdict, check_against_limits, number_text, verdict_of

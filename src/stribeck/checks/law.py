@@ -1,7 +1,5 @@
 """Checks of the contact law: its range at the centre and at the minimum of friction, and the influence of its tail."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The part common to contacts of every geometry: inputs in SI units, checked, kept and replaced."""
 
-from __future__ import annotations
-
 import inspect
 import math
 import re

@@ -39,8 +39,6 @@ Source: ours; K and K' from series in bispherical coordinates of sliding and tur
 and H. Brenner (1967), whose 0.9588 and -0.2526 are fits at finite gaps; M. Chaoui and F. Feuillebois (2003) have 0.95429.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

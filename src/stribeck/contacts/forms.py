@@ -1,7 +1,5 @@
 """Inputs in other forms: as data sheets, tribometers and tables of materials have them, and what follows from them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace

@@ -10,8 +10,6 @@ where the integral J of a ball is that of :mod:`stribeck.contacts.cut_off`.  Its
 :mod:`stribeck.numerics.dual`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any

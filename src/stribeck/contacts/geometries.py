@@ -1,7 +1,5 @@
 """The contacts by geometry in SI units: a cylinder, ``geometry = "line"``, or a ball, ``"point"``."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import ClassVar
 

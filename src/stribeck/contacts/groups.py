@@ -9,8 +9,6 @@ r"""The three dimensionless groups and the parts of the model that they carry: a
 with r = 1, e = 1/2, c = 2 and k = 4/pi on the line, and r = 2, e = 1/3, c = pi/2 and k = 3/4 on the ball.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypedDict, cast

@@ -1,7 +1,5 @@
 """The inputs of the contacts of a geometry: what they keep, what may stand in its place, usual errors, and their reading."""
 
-from __future__ import annotations
-
 import inspect
 import math
 from collections.abc import Collection, Mapping

@@ -1,7 +1,5 @@
 """Notes for the user on where the model leaves its range: pressure, width, contact law, suction."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -3,8 +3,6 @@
 The numbers of laws are in SI units with a contact and in Hertz units with groups.
 """
 
-from __future__ import annotations
-
 import inspect
 import math
 from collections.abc import Collection, Iterator

@@ -1,7 +1,5 @@
 """Fluid, cavitation, flow factors, solid and motion for one call: a contact or groups that have them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from contextlib import suppress

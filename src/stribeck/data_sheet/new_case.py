@@ -1,7 +1,5 @@
 """A new case file: every key with its unit, its usual range and where a value may come from."""
 
-from __future__ import annotations
-
 import math
 from importlib.resources import files
 

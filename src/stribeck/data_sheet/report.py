@@ -1,7 +1,5 @@
 """One page to hand over, as HTML or PDF: its content, solved here, and the page, which makes no request to any server."""
 
-from __future__ import annotations
-
 import io
 import os
 import re

@@ -1,7 +1,5 @@
 """Cells of tables: what a header says, whether a cell is a number, and which."""
 
-from __future__ import annotations
-
 import csv
 import re
 from collections.abc import Iterable

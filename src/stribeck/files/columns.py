@@ -1,7 +1,5 @@
 """Columns of a table by what they are called, in SI units, and what lines above it say of all rows."""
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import math

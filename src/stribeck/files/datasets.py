@@ -24,16 +24,15 @@ Column = tuple[str | Sequence[str], Any, str, str]  # Dimensions, values, unit a
 
 NETCDF_ENDINGS = (".nc",)
 CSV_ENDINGS = (".csv",)
-ZARR_ENDINGS = (".zarr",)
-PARQUET_ENDINGS = (".parquet",)
-EXPORT_ENDINGS = (*NETCDF_ENDINGS, *CSV_ENDINGS, *ZARR_ENDINGS, *PARQUET_ENDINGS)
 
-# What needs a library besides that of datasets: purpose, extra and library.
+# What needs a library besides that of datasets, by ending: purpose, extra and library.
 LIBRARIES = {
-    NETCDF_ENDINGS: ("a NetCDF file", "data", "netCDF4"),
-    ZARR_ENDINGS: ("a Zarr folder", "data", "zarr"),
-    PARQUET_ENDINGS: ("a Parquet file", "parquet", "pyarrow"),
+    ".nc": ("a NetCDF file", "data", "netCDF4"),
+    ".zarr": ("a Zarr folder", "data", "zarr"),
+    ".parquet": ("a Parquet file", "parquet", "pyarrow"),
 }
+
+EXPORT_ENDINGS = (".nc", ".csv", ".zarr", ".parquet")
 
 
 def import_xarray(what: str = "a dataset") -> Any:
@@ -76,7 +75,7 @@ def listed(values: Sequence[Any]) -> Any:
 
 def write_netcdf(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:
     """Write a dataset as NetCDF-4."""
-    need_extra(*LIBRARIES[NETCDF_ENDINGS])
+    need_extra(*LIBRARIES[".nc"])
     with atomic_write(path, NETCDF_ENDINGS, force=force) as temporary:
         try:
             dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
@@ -105,7 +104,7 @@ def write_columns(path: PathLike, above: Iterable[str], columns: Mapping[str, Se
 
 def write_parquet(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:
     """Write a dataset as a table of Parquet, a row for each point; units and long names are metadata of its columns."""
-    need_extra(*LIBRARIES[PARQUET_ENDINGS])
+    need_extra(*LIBRARIES[".parquet"])
     import pyarrow
     from pyarrow import parquet
 
@@ -116,7 +115,7 @@ def write_parquet(dataset: xarray.Dataset, path: PathLike, *, force: bool = Fals
         for name, column in zip(columns, about, strict=True)
     ]
     schema = pyarrow.schema(fields, metadata=_about(dataset))
-    with atomic_write(path, PARQUET_ENDINGS, force=force) as temporary:
+    with atomic_write(path, (".parquet",), force=force) as temporary:
         parquet.write_table(pyarrow.table(about, schema=schema), temporary)
 
 
@@ -137,10 +136,10 @@ def write_zarr(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) 
 
 def check_folder(path: PathLike, *, force: bool = False) -> Path:
     """Return where a folder of Zarr shall be written, or refuse a place where it cannot."""
-    need_extra(*LIBRARIES[ZARR_ENDINGS])
+    need_extra(*LIBRARIES[".zarr"])
     target = path_of(path)
     if not target.is_dir():
-        return check_writable(path, ZARR_ENDINGS, force=False)
+        return check_writable(path, (".zarr",), force=False)
     if not (force and (target / ".zgroup").is_file()):
         raise InputError(
             f"{target} exists already and is kept; add --force (in Python force=True) to replace it if it is Zarr, "
@@ -152,22 +151,19 @@ def check_folder(path: PathLike, *, force: bool = False) -> Path:
 def check_export(path: PathLike, *, force: bool = False) -> None:
     """Refuse a file that :func:`write_data` could not write, before the work whose results it is for."""
     ending = path_of(path).suffix.lower()
-    if ending in ZARR_ENDINGS:
+    if ending == ".zarr":
         check_folder(path, force=force)
         return
     check_writable(path, EXPORT_ENDINGS, force=force)
-    need_extra("a data file", "data", "xarray")
-    for endings, needed in LIBRARIES.items():
-        if ending in endings:
+    for needed in (("a data file", "data", "xarray"), LIBRARIES.get(ending)):
+        if needed is not None:
             need_extra(*needed)
 
 
 def write_data(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:
     """Write a dataset as the ending of ``path`` says."""
-    ending = path_of(path).suffix.lower()
-    others = ((CSV_ENDINGS, write_csv), (ZARR_ENDINGS, write_zarr), (PARQUET_ENDINGS, write_parquet))
-    write = next((write for endings, write in others if ending in endings), write_netcdf)
-    write(dataset, path, force=force)
+    others = {".csv": write_csv, ".zarr": write_zarr, ".parquet": write_parquet}
+    others.get(path_of(path).suffix.lower(), write_netcdf)(dataset, path, force=force)
 
 
 def _table(dataset: xarray.Dataset) -> dict[str, Any]:

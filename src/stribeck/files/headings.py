@@ -1,7 +1,5 @@
 """Headers of tables in text: which line names the columns, which gives units, which names curves side by side."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Input files and their text, bounded before they are read: no pipe, device or enormous file is waited for."""
 
-from __future__ import annotations
-
 import codecs
 import errno
 import os

@@ -1,7 +1,5 @@
 """Workbooks as lines of text: the cells of each sheet separated by tabs, read within bounds."""
 
-from __future__ import annotations
-
 import io
 import math
 import posixpath

@@ -1,7 +1,5 @@
 """Tables in files: separator, header, units, steps, decimal sign, encoding and missing values found or refused."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Tables as text: their columns, the numbers in them, and curves that stand side by side."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Files of results: checked before the work, written whole or not at all."""
 
-from __future__ import annotations
-
 import errno
 import importlib.util
 import os

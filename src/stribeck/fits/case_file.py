@@ -1,7 +1,5 @@
 """The case file of a fit: read before it, and written after it with the fitted values and where they come from."""
 
-from __future__ import annotations
-
 import json
 import math
 import os

@@ -1,7 +1,5 @@
 """What the columns of a laboratory's table are: by their headers, or as the case says."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import replace

@@ -5,8 +5,6 @@ Least squares on the logarithms of the inputs with analytic derivatives.  With a
 inputs at which they were solved.
 """
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Callable, Sequence

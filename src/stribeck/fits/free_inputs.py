@@ -1,7 +1,5 @@
 """The inputs that a fit is free to change: where they start, their bounds and priors, and whether these data can tell them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

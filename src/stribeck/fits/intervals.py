@@ -7,8 +7,6 @@ size of the noise comes from the residuals, as for the robust loss, else of the 
 Source: Venzon and Moolgavkar, Appl. Stat. 37 (1988) 87.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

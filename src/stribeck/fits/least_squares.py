@@ -9,8 +9,6 @@ where errors are normal (Holland and Welsch, Commun. Stat. A 6 (1977) 813).  Whe
 size of the noise comes from the residuals.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -311,7 +309,7 @@ def _scaled(at: Minimum) -> Minimum:
 
 def noise_of(at: Minimum) -> float:
     """Return the standard deviation of the residuals, by their median where the loss is robust."""
-    n, p = at.jacobian.shape
+    n = len(at.residuals)
     effective = effective_parameters(at)
     if at.objective.robust:
         return float(MAD * np.median(np.abs(at.residuals)) * math.sqrt(n / max(n - effective, 1.0)))

@@ -5,7 +5,6 @@ Every value that is refused is named with its row and column; what is left out o
 
 from __future__ import annotations
 
-import difflib
 import glob
 import math
 import os
@@ -32,7 +31,7 @@ from stribeck.fits.stated import entries_of, inputs_said
 from stribeck.fits.strokes import without_codes_of_forces, without_stops
 from stribeck.fits.values import Abscissa, checked, unit_in
 from stribeck.quantities.formats import format_si
-from stribeck.quantities.keywords import answers_typos
+from stribeck.quantities.keywords import answers_typos, nearest
 from stribeck.quantities.results import ByValue, Shown
 from stribeck.quantities.units import InputError, checked_kind, show
 
@@ -347,8 +346,8 @@ def missing_text(path: Path) -> str:
     folder = path.parent
     if not folder.is_dir():
         return f"{path} does not exist, nor does its folder {folder}."
-    near = difflib.get_close_matches(path.name, [each.name for each in folder.iterdir()], 1)
-    return f"{path} does not exist; {f'did you mean {folder / near[0]}?' if near else 'check its name and folder.'}"
+    near = nearest(path.name, [each.name for each in folder.iterdir()])
+    return f"{path} does not exist; {f'did you mean {folder / near}?' if near else 'check its name and folder.'}"
 
 
 def _key(each: Path | Measurements) -> object:

@@ -16,8 +16,6 @@ Numbers of fluids and solids are in the model that the groups carry, in Hertz un
 and on those of the Hertz contact, and give the friction a further derivative at fixed groups.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -5,8 +5,6 @@ its mean larger, as neighbouring samples are alike and count for less than indep
 repeats: their scatter is an error, whatever a pass remembers.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -155,14 +153,15 @@ class _Step:
 
 def average_repeats(rows: Sequence[Row], runs: Sequence[str], keep_run_in: bool) -> Averaged:
     r"""Average rows at the same speed of a curve: their mean and its standard error."""
-    steps, starting, ramped = _steps(rows, runs)
+    tolerance = _tolerance(rows, runs)
+    steps, starting, ramped = _steps(rows, runs, tolerance)
     means = [step.mean for step in steps]
     marked, sentences = run_in(means, counted(means, [step.run for step in steps]))
     numbers = {row[1] for step in steps for row in step.rows if step.rows[0][1] in marked}
     kept = [step for step in steps if keep_run_in or step.rows[0][1] not in marked]
-    groups = _at_same_speed(kept, _tolerance(rows, runs))
+    groups = _at_same_speed(kept, tolerance)
     counts = [sum(len(step.rows) for step in group) for group in groups]
-    at_all = [sum(len(step.rows) for step in group) for group in _at_same_speed(steps, _tolerance(rows, runs))]
+    at_all = [sum(len(step.rows) for step in group) for group in _at_same_speed(steps, tolerance)]
     if not groups or 2 * sum(count for count in at_all if count >= FEWEST) < sum(at_all):
         why = (
             "the speed changes steadily, without steps"
@@ -231,9 +230,8 @@ def _errors(groups: Sequence[Sequence[_Step]]) -> tuple[list[float], str]:
     )
 
 
-def _steps(rows: Sequence[Row], runs: Sequence[str]) -> tuple[list[_Step], list[int], bool]:
+def _steps(rows: Sequence[Row], runs: Sequence[str], tolerance: float) -> tuple[list[_Step], list[int], bool]:
     """Return the steps, the numbers of rows that are of none, and whether the speed is ramped all along."""
-    tolerance = _tolerance(rows, runs)
     steps, starting = list[_Step](), list[int]()
     ramped = False
     for mine in _blocks(rows, runs).values():

@@ -4,8 +4,6 @@ A mean speed is never taken for the sum of the surface speeds, nor the other way
 the reader asks.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable

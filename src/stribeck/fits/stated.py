@@ -1,7 +1,5 @@
 """What a file of measured friction says of all of its rows: in lines above its header, in its name, and in the case."""
 
-from __future__ import annotations
-
 from fnmatch import fnmatchcase
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Rows of strokes to and fro: those at rest, and those in which friction has not turned round with the speed."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

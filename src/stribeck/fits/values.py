@@ -3,8 +3,6 @@
 A cell that cannot be used is named by row and column; one with a unit of its own is read with that.
 """
 
-from __future__ import annotations
-
 import re
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """Numbers as short text for people, and a number of a result with all that files, JSON, reports and cards say of it."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Sequence

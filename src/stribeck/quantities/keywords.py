@@ -1,7 +1,5 @@
 """A typing error in a name, answered with the nearest one that is known."""
 
-from __future__ import annotations
-
 import difflib
 import inspect
 import re

@@ -1,7 +1,5 @@
 """Attributes and public names that are made on their first use."""
 
-from __future__ import annotations
-
 import functools
 import re
 import sys

@@ -1,7 +1,5 @@
 """How a solve ended, as a sentence."""
 
-from __future__ import annotations
-
 from enum import Enum
 
 

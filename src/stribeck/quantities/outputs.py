@@ -3,8 +3,6 @@
 Results, files, sweeps, reports and the explorer read them.  The names of this module are about the line.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

@@ -6,8 +6,6 @@ A new law is a new file in the package of its kind, or an entry point of another
     my-law = "my_package.my_module:MyLaw"
 """
 
-from __future__ import annotations
-
 import functools
 import inspect
 import pkgutil

@@ -1,7 +1,5 @@
 """The part common to all results: a representation that fits a screen, and equality of numbers."""
 
-from __future__ import annotations
-
 import html
 import inspect
 import textwrap

@@ -10,8 +10,6 @@ The field takes text with a unit or a number in SI units and holds a number with
 Where errors count, a value may carry its own: ``"1.0 +- 0.2 um"``, ``"46 cSt +- 5 %"`` or a table of value and error.
 """
 
-from __future__ import annotations
-
 import functools
 import inspect
 import math

@@ -9,8 +9,6 @@ The sweep that fills a store holds its write lock but for the moment of each com
 first is dead.  So no two of them write, also where a file system does not lock.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import random

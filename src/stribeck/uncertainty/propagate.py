@@ -1,7 +1,5 @@
 """Errors of the inputs, propagated to friction, films, transitions and the probability of each regime."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

@@ -3,8 +3,6 @@
 Logarithms of films and viscous friction and log odds of the load share are nearly linear in the logarithms of the inputs.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
