@@ -520,6 +520,7 @@ def test_usual_errors_stand_in_for_those_that_nobody_gives(tmp_path, capsys):
     found = sb.propagate(TRUE, "typical", transitions=False)
     assert found.errors.keys() == {*case.errors} and f"errors of {len(case.errors)} inputs" in found.probability_sentence
     given = sb.propagate(TRUE, {"beta": 0.3}, transitions=False)
+    assert given.errors == pytest.approx({"beta": 0.3})  # so that propagating these gives the same
     assert found["friction"].interval_95[1] > given["friction"].interval_95[1]
     spectrum = sb.surfaces.SelfAffine(h_rms=1e-6, q0=4e4, q1=4e6, hurst=0.8)
     rough = TRUE.replace(law=sb.surfaces.persson_law(spectrum))

@@ -161,7 +161,7 @@ def propagate(
     regime_of_samples = regime_numbers(1 - share, friction_share(dry, viscous))
     return Uncertainty(
         contact=contact,
-        errors=sigmas,
+        errors=StandardErrors({name: math.sqrt(math.expm1(sigma**2)) for name, sigma in sigmas.items()}, sigmas.nested),
         spreads=tuple(spreads),
         regimes={name: float((regime_of_samples == number).mean()) for number, name in enumerate(REGIMES)},
         contributions={name: part / total for name, part in sorted(parts.items(), key=lambda pair: -pair[1])},

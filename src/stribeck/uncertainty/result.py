@@ -71,7 +71,7 @@ class Uncertainty(Exported, Told):
     _picture = "stribeck.plot.rows.plot_uncertainty"
 
     contact: Annotated[Contact, "the contact with the inputs as given"]
-    errors: Annotated[StandardErrors, "standard error of the logarithm of each uncertain input of the contact"]
+    errors: Annotated[StandardErrors, "standard error of each uncertain input of the contact over its value"]
     spreads: Annotated[tuple[Spread, ...], "friction, films, load shares and transitions"]
     regimes: Annotated[dict[str, float], "probability of boundary, mixed and hydrodynamic lubrication"]
     contributions: Annotated[
