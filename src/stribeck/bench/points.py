@@ -42,9 +42,8 @@ def run_in_of(passes: Sequence[Pass], names: Sequence[str]) -> list[int]:
             runs.append(str(each.file) if several else "")
             places.append(k)
     single = [i for i, run in enumerate(runs) if not run]
-    if single:
-        for i, run in zip(single, counted([rows[i] for i in single], [str(i) for i in single]), strict=True):
-            runs[i] = f"pass {run}"
+    for i, run in zip(single, counted([rows[i] for i in single], [str(i) for i in single]), strict=True):
+        runs[i] = f"pass {run}"
     marked, _ = run_in(rows, runs)
     return [places[i] for i in sorted(marked)]
 

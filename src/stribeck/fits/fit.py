@@ -198,12 +198,8 @@ def _search(goal: Objective, definition: Definition, report: _Progress) -> Minim
     starts = [np.zeros(len(goal.model.free))]
     if goal.states.uses_atlas:
         starts += _best(first, _places(goal), definition)
-    best: Minimum | None = None
-    for start in starts:
-        found = minimise(first, start, on_step=lambda: report("searching"))
-        if best is None or found.value < best.value:
-            best = found
-    assert best is not None
+    found = (minimise(first, start, on_step=lambda: report("searching")) for start in starts)
+    best = min(found, key=lambda each: each.value)
     return _brought_back(settle(best.objective, best.theta, lambda: report("fitting")))
 
 
