@@ -60,7 +60,7 @@ def true_error(s: sb.results.Solution) -> float:
         exact[ROW["flux_gap"]] = flux_gap(gap, mesh.weights) if gap.min() > 0 else np.nan
     scales = np.abs(exact)
     scales[[ROW["contact_load_share"], ROW["fluid_load_share"]]] = 1.0
-    scales[ROW["offset"]] = max(scales[ROW["offset"]], 1e-3)
+    scales[ROW["offset"]] = max(scales[ROW["offset"]], scales[ROW["central_gap"]])
     if g.speed == 0:
         scales[gaps] = np.maximum(scales[gaps], 1e-3 * g.relative_roughness)
     scales[DRAG_ROWS] = drag_scales(exact[None])[0]  # what cancels is right to the parts, as states say of themselves

@@ -105,14 +105,14 @@ def _refined_values(solution, extra_nodes=6, doublings=5):
 def _true_errors(solution):
     """Errors of the observables as the estimate means them: relative, those of the load shares absolute.
 
-    Where an observable crosses zero they are relative to a thousandth of its scale there.
+    Where an observable crosses zero they are relative to its scale there: the offset to the central gap.
     """
     exact = _refined_values(solution)
     found = np.array([getattr(solution.observables, name) for name in NAMES])
     scales = np.abs(exact)
     scales[:2] = 1.0
-    offset = NAMES.index("offset")
-    scales[offset] = max(scales[offset], 1e-3)
+    offset, central_gap = NAMES.index("offset"), NAMES.index("central_gap")
+    scales[offset] = max(scales[offset], scales[central_gap])
     if solution.groups.speed == 0:
         scales[2:4] = np.maximum(scales[2:4], 1e-3 * solution.groups.relative_roughness)
     scales[scales == 0] = 1.0
