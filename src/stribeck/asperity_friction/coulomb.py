@@ -1,15 +1,11 @@
 """Friction of asperities as a coefficient times their load."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from stribeck.asperity_friction.law import AsperityFriction
 from stribeck.quantities.docstrings import told
 from stribeck.quantities.outputs import AREA
-
-__all__ = ["Coulomb", "as_asperity_friction", "needs_area"]
 
 # What the methods say that return the coefficient.
 OF_CONTACT = (

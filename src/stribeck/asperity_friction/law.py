@@ -6,8 +6,6 @@ with the part f of the slip that acts, the factor k of a contact, and the observ
 new friction is a new file with one frozen class that has the members of :class:`AsperityFriction`.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from dataclasses import replace
@@ -20,8 +18,6 @@ from stribeck.quantities.docstrings import told
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.schema import Input, Series, numbers_of
 from stribeck.quantities.units import InputError
-
-__all__ = ["AsperityFriction"]
 
 
 class AsperityFriction(ABC):

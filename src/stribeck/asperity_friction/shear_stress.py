@@ -1,7 +1,5 @@
 """Friction of asperities as a shear stress times their real area of contact."""
 
-from __future__ import annotations
-
 import math
 from abc import abstractmethod
 from typing import Any, ClassVar
@@ -15,8 +13,6 @@ from stribeck.quantities.docstrings import told
 from stribeck.quantities.outputs import AREA
 from stribeck.quantities.schema import Input, law
 from stribeck.quantities.units import InputError, show
-
-__all__ = ["OF_STRESS", "OverArea", "ShearStress"]
 
 # What the methods say that return a stress.
 OF_STRESS = {"sliding_speed": "float\n    Sliding speed v, zero or positive [m/s]."}, "float\n    Shear stress [Pa]."

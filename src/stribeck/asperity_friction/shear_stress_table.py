@@ -1,7 +1,5 @@
 """Friction of asperities as a measured shear stress over speed times their real area of contact."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import ClassVar, Self
 
@@ -11,8 +9,6 @@ from stribeck.asperity_friction.shear_stress import OF_STRESS, OverArea
 from stribeck.quantities.docstrings import told
 from stribeck.quantities.schema import Series, law
 from stribeck.quantities.units import InputError
-
-__all__ = ["ShearStressTable"]
 
 
 @law

@@ -17,8 +17,6 @@ logarithm of the speed. Above :math:`b_5` there are no asperities left and the s
 Here are maps and polynomials; the table is :mod:`stribeck.atlas.table`, how it is made :mod:`evidence.atlas_build`.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """What the tables hold at states inside their boxes: their functions, and what friction is made of, with derivatives."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple

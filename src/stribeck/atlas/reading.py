@@ -5,8 +5,6 @@ than a microsecond.  Nothing is extrapolated: outside the box of a table every f
 error, against states that the table was not made from, is in docs/atlas.md; for single answers the solver remains the default.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any, TypeVar

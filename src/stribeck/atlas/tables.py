@@ -1,7 +1,5 @@
 """Which tables the atlas has, and which of them holds for given groups: one row a table."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import lru_cache
 

@@ -1,7 +1,5 @@
 """The work of a figure: states and curves that are solved and reported one by one, and the dataset made of them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from string import Formatter

@@ -1,7 +1,5 @@
 """What a motion is: the sliding speed over time, where it turns, and whether it comes back to where it began."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
@@ -10,8 +8,6 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.numerics.settings import MAX_REFINEMENTS, NEGLIGIBLE
 from stribeck.quantities.units import InputError, show
-
-__all__ = ["Motion", "checked_motion", "dense_where_slow"]
 
 
 class Motion(Protocol):

@@ -1,7 +1,5 @@
 """A motion whose speed changes evenly: a start, a run-down."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 import numpy as np
@@ -9,8 +7,6 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.motions.motion import Motion
 from stribeck.quantities.schema import Input, law
-
-__all__ = ["Ramp"]
 
 
 @law

@@ -1,7 +1,5 @@
 """A stroke to and fro as a crank drives it."""
 
-from __future__ import annotations
-
 import math
 from typing import ClassVar
 
@@ -10,8 +8,6 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.motions.motion import Motion
 from stribeck.quantities.schema import Input, law
-
-__all__ = ["Sine"]
 
 
 @law

@@ -1,7 +1,5 @@
 """A motion as it was measured: speeds at instants."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -11,8 +9,6 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.motions.motion import Motion, dense_where_slow
 from stribeck.quantities.units import InputError, show, to_si
-
-__all__ = ["Table"]
 
 
 @dataclass(frozen=True)

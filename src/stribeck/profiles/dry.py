@@ -13,8 +13,6 @@ and the pressure rises from an edge as :math:`k d^{1/2}` with the distance d, wh
 and likewise of the right one.  Kinks of the slope end panels of the quadrature.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -26,8 +24,6 @@ from stribeck.numerics.panels import reference
 from stribeck.numerics.settings import EPSILON
 from stribeck.profiles.profile import Profile
 from stribeck.quantities.units import InputError
-
-__all__ = ["DryContact", "dry_contact"]
 
 PANELS = 64  # Panels of the quadrature between kinks: a tip of a hundredth of the contact is seen to ten digits
 NODES = 16  # Nodes on each

@@ -25,8 +25,6 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.registry import check_user_part, refusal
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["Departure", "Parabola", "Profile", "Undeformed", "as_profile"]
-
 PROFILE_UP_TO = 6.0  # Distance up to which the gap is that of the shape [L]
 PARABOLA_FROM = 14.0  # Distance from which it is the parabola [L]
 

@@ -1,7 +1,5 @@
 """The shapes of the package by formulas: a cylinder, a flat land, a lip, a worn cylinder, and grooves in any of them."""
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
@@ -16,8 +14,6 @@ from stribeck.numerics.settings import ROUNDING
 from stribeck.profiles.profile import Departure, Parabola, Profile, Undeformed, as_profile
 from stribeck.quantities.schema import Input, law, numbers_of
 from stribeck.quantities.units import InputError
-
-__all__ = ["Cylinder", "Grooved", "Land", "Lip", "Shape", "Worn"]
 
 FADING_POWER = 8  # Power of the distance with which grooves fade at the ends of the grooved strip
 

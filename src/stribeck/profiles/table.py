@@ -6,8 +6,6 @@ of the body that has it are
 .. math:: p = \sum_n b_n \sin n\theta, \qquad h_0' = \frac{2}{E^*} \sum_n b_n T_n(t)
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,8 +18,6 @@ from stribeck._types import Array
 from stribeck.profiles.shapes import Shape
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import InputError, real_array, show, to_si
-
-__all__ = ["Table", "from_pressure"]
 
 MIN_POINTS = 4  # Fewest points of a table through which a cubic spline goes
 POINTS_PER_TERM = 2  # Points of a pressure for each term of its series

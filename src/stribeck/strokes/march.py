@@ -37,8 +37,6 @@ from stribeck.numerics.settings import (
 from stribeck.numerics.trace import Matrix
 from stribeck.quantities.lazy import cached_property
 
-__all__ = ["March", "Moving", "StepLost"]
-
 
 # What has passed a trailing edge lies on the surface where it passed; a leading edge that comes back draws it in, and pushes
 # ahead what it does not. On either side the liquid is no less than the part of it that the contact has not reached.

@@ -18,8 +18,6 @@ from stribeck.numerics.settings import COARSE_RTOL, NEGLIGIBLE
 from stribeck.quantities.formats import format_error, format_si
 from stribeck.quantities.results import ByValue, Card, Told
 
-__all__ = ["Stroke", "beside_steady"]
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Stroke(Exported, Told, ByValue):

@@ -1,7 +1,5 @@
 """From a contact and a motion to friction and films in time."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -30,8 +28,6 @@ from stribeck.solver.solve import solved_point
 from stribeck.solver.solve_error import SolveError, describe
 from stribeck.strokes.march import March, StepLost
 from stribeck.strokes.result import Stroke
-
-__all__ = ["stroke"]
 
 Inlet: TypeAlias = Literal["flooded", "own-wake"]
 

@@ -1,7 +1,5 @@
 """Figure 10: how the fluid takes load from the asperities at slow speed, and the function phi of the load that rules it."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figure 11: the regimes over speed, load and roughness as solved, and the formulas for their ends, printed and corrected."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from stribeck.figures import style

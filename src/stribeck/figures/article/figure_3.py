@@ -1,7 +1,5 @@
 """Figure 3: a Stribeck curve from boundary to hydrodynamic lubrication, and the space of states that it crosses."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Figure 4: gaps of smooth contacts, slow and fast, as they are and on the scales that make them one curve."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figure 5: film and friction of smooth contacts over all speeds, with the laws of both limits and what lies between."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from stribeck.asymptotics import hydrodynamic

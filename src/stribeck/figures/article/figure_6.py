@@ -1,7 +1,5 @@
 """Figure 6: gaps of contacts at rest, nearly smooth and very rough, and the scales on which they are one curve."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from stribeck._types import Array

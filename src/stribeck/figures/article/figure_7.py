@@ -1,7 +1,5 @@
 """Figure 7: Stribeck curves over the Hersey number, and over the friction that their speed causes between smooth surfaces."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figure 8: gap and pressures on the way from boundary to hydrodynamic lubrication, between the two limits."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from stribeck.asymptotics import boundary

@@ -1,7 +1,5 @@
 """Figure 9: asperities that reach through the film: friction around its minimum, and film and friction at the minimum."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

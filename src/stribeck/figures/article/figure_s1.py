@@ -1,7 +1,5 @@
 """Figure S1: fluid pressure and gap of slow rough contacts against their expansion in the speed, to second order."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from stribeck._types import Array

@@ -1,7 +1,5 @@
 """What figures 7, 9 and 10 share: the Stribeck curves of several loads and roughnesses, and the reported values of Lambda."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from operator import attrgetter
 from typing import Any
