@@ -120,12 +120,12 @@ class Interval:
     def read(self) -> tuple[Array, Array, Sequence[int], bool]:
         """Polynomials of observables without a series, their errors and columns, and whether they are accurate enough."""
         values, errors, columns = self.problem.read(self.left, self.right, chebyshev_nodes(MAX_DEGREE))
-        with np.errstate(invalid="ignore"):  # of values that are not finite no polynomial is good enough
-            form = chebyshev_form(values)
-        tails = SAFETY * np.abs(form[-3:]).max(axis=0, initial=0.0)
         largest = errors.max(axis=0, initial=0.0)
         scales = self.problem.read_scales(values)
-        missed = np.divide(tails, scales, out=np.full_like(tails, math.inf), where=scales > 0)
+        with np.errstate(invalid="ignore", over="ignore"):  # of values that are not finite no polynomial is good enough
+            form = chebyshev_form(values)
+            tails = SAFETY * np.abs(form[-3:]).max(axis=0, initial=0.0)
+            missed = np.divide(tails, scales, out=np.full_like(tails, math.inf), where=scales > 0)
         return form, largest + missed, columns, bool((missed <= np.maximum(0.5 * largest, self.problem.negligible)).all())
 
     @cached_property
