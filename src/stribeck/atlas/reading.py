@@ -6,8 +6,8 @@ error, against states that the table was not made from, is in docs/atlas.md; for
 """
 
 import math
-from collections.abc import Callable
-from typing import Any, TypeVar
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -31,7 +31,7 @@ from stribeck.contacts.geometries import LINE
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.numerics.dual import slope_of, value_of
-from stribeck.quantities.docstrings import complete_docstring
+from stribeck.quantities.docstrings import told
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, checked_kind, show
 
@@ -50,59 +50,47 @@ ARGUMENTS = {
 }
 RAISES = "InputError\n    If a state is outside the box of its table, or an argument is wrong."
 
-Function = TypeVar("Function", bound=Callable[..., Any])
+documented = partial(told, ARGUMENTS, raises=RAISES)
 
 
-def documented(returns: str) -> Callable[[Function], Function]:
-    """Return a decorator that completes the docstring of a function of states."""
-
-    def complete(function: Function) -> Function:
-        kind, _, meaning = returns.rpartition(": ")
-        value = f"{kind or 'float or ndarray'}\n    {meaning}"
-        function.__doc__ = complete_docstring(function, ARGUMENTS, value, RAISES)
-        return function
-
-    return complete
-
-
-@documented("Load share [-], 1 at rest, 0 for smooth contacts and where it is below 1e-13.")
+@documented("float or ndarray\n    Load share [-], 1 at rest, 0 for smooth contacts and where it is below 1e-13.")
 def contact_load_share(groups: Groups) -> Value:
     """Return the part of the load on the asperities."""
     return _shaped(groups, contact_share(look_up(groups, (ODDS,)).values[0]))
 
 
-@documented("Load share [-], 0 at rest, 1 for smooth contacts.")
+@documented("float or ndarray\n    Load share [-], 0 at rest, 1 for smooth contacts.")
 def fluid_load_share(groups: Groups) -> Value:
     """Return the part of the load on the fluid, without loss of digits where it is small."""
     return _shaped(groups, contact_share(-look_up(groups, (ODDS,)).values[0]))
 
 
-@documented("Gap [u_Hz].")
+@documented("float or ndarray\n    Gap [u_Hz].")
 def central_gap(groups: Groups) -> Value:
     """Return the gap at the centre."""
     return _gap(groups, CENTRAL)
 
 
-@documented("Gap [u_Hz].")
+@documented("float or ndarray\n    Gap [u_Hz].")
 def minimum_gap(groups: Groups) -> Value:
     """Return the minimum gap."""
     return _gap(groups, MINIMUM)
 
 
-@documented("Gap [u_Hz].")
+@documented("float or ndarray\n    Gap [u_Hz].")
 def flux_gap(groups: Groups) -> Value:
     """Return the gap that carries the flux, h*; a ball, whose film has no one flux, is refused."""
     return _gap(groups, FLUX)
 
 
-@documented("Offset [u_Hz], of cylinders in the gauge ln(abs(x-y)/a).")
+@documented("float or ndarray\n    Offset [u_Hz], of cylinders in the gauge ln(abs(x-y)/a).")
 def offset(groups: Groups) -> Value:
     """Return the height of the apex over the undeformed surface."""
     log_gap, deflection = look_up(groups, (CENTRAL, DEFLECTION)).values
     return _shaped(groups, np.exp(log_gap) + deflection)
 
 
-@documented("Friction coefficient [-].")
+@documented("float or ndarray\n    Friction coefficient [-].")
 @answers_typos
 def friction(
     groups: Groups,
@@ -126,7 +114,7 @@ def friction(
     return _shaped(groups, _rubbing(groups, boundary_friction, inputs) * contact + viscous)
 
 
-@documented("Friction coefficient [-]; zero at rest.")
+@documented("float or ndarray\n    Friction coefficient [-]; zero at rest.")
 def viscous_friction(
     groups: Groups,
     beta: float = 1.0,
@@ -141,8 +129,8 @@ def viscous_friction(
 
 
 @documented(
-    "ndarray, shape (3, ...): By ln(speed), ln(load) and ln(roughness), the other two groups held [-]; the last is zero for "
-    "smooth contacts."
+    "ndarray, shape (3, ...)\n    By ln(speed), ln(load) and ln(roughness), the other two groups held [-]; the last is zero "
+    "for smooth contacts."
 )
 @answers_typos
 def friction_derivatives(
@@ -171,8 +159,8 @@ def friction_derivatives(
 
 
 @documented(
-    "ndarray, shapes (1 + parts, ...) and (1 + parts, 3, ...): Contact load share and the observables that friction takes, "
-    "of cylinders the viscous friction for beta = 1 [-]; their derivatives by ln(speed), ln(load) and ln(roughness)."
+    "ndarray, shapes (1 + parts, ...) and (1 + parts, 3, ...)\n    Contact load share and the observables that friction "
+    "takes, of cylinders the viscous friction for beta = 1 [-]; their derivatives by ln(speed), ln(load) and ln(roughness)."
 )
 def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple[Array, Array]:
     """Return what the friction is made of, without the coefficients that it takes beside, and the derivatives of each.
@@ -189,7 +177,7 @@ def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple
 
 
 @documented(
-    "ndarray, shape (4, ...): Load shares of fluid and asperities, :func:`viscous_friction`, and the derivative of "
+    "ndarray, shape (4, ...)\n    Load shares of fluid and asperities, :func:`viscous_friction`, and the derivative of "
     ":func:`friction` by ln(speed) [-]."
 )
 @answers_typos

@@ -45,9 +45,7 @@ def along(rate: float, order: int) -> Array:
     return found
 
 
-def implicit_series(
-    found: Array, coefficient: Callable[[int], Array], inverse: Callable[[Array], Array], refines: bool = False
-) -> None:
+def implicit_series(found: Array, coefficient: Callable[[int], Array], inverse: Callable[[Array], Array]) -> None:
     """Write the Taylor coefficients of the solution of an equation below the first one.
 
     ``coefficient(k)`` is that of the residual with the coefficients that are written so far.
@@ -55,7 +53,7 @@ def implicit_series(
     is_old = False
     for k in range(1, len(found)):
         found[k] = inverse(coefficient(k))
-        if refines and (k == 1 or is_old):
+        if k == 1 or is_old:
             change = inverse(coefficient(k))
             # Factors that change the first order too much are too old: every order is refined.
             is_old = is_old or bool(np.abs(change).max() > HALF_DIGITS * np.abs(found[1]).max())
@@ -65,15 +63,13 @@ def implicit_series(
             return
 
 
-def radius(coefficients: Array, reach: float = 1.0, rounding: float = COEFFICIENT_NOISE) -> float:
+def radius(coefficients: Array, rounding: float = COEFFICIENT_NOISE) -> float:
     """Return about the radius of convergence of series: that by which their coefficients fall."""
     order = len(coefficients) - 1
     size = np.abs(coefficients[1:]).reshape(order, -1).max(axis=1)
     k = np.arange(order // 2 + 1, order + 1)
-    told = k[size[k - 1] > rounding * reach ** -k.astype(float)]
-    return float(
-        np.min((max(size[0], rounding / reach) / size[told - 1]) ** (1.0 / np.maximum(told - 1, 1)), initial=MAX_LOG_STEP)
-    )
+    told = k[size[k - 1] > rounding]
+    return float(np.min((max(size[0], rounding) / size[told - 1]) ** (1.0 / np.maximum(told - 1, 1)), initial=MAX_LOG_STEP))
 
 
 def beyond(series: Array, t: float) -> tuple[Array, float]:

@@ -179,9 +179,9 @@ def law_text(solution: BaseSolution) -> str:
     return f"{solution.law} contact law" + (f" ({numbers})" if numbers else "")
 
 
-def interference(gap: Any, index: float = REFRACTIVE_INDEX) -> Array:
+def interference(gap: Any) -> Array:
     """Return the colours that a film shows between a coated glass and a reflecting ball."""
-    path = index * np.maximum(np.asarray(gap, dtype=float), 0.0)[..., None]
+    path = REFRACTIVE_INDEX * np.maximum(np.asarray(gap, dtype=float), 0.0)[..., None]
     waves = np.array(BANDS)
     fading = np.exp(-np.square(2 * math.pi * path * BANDWIDTH / waves**2) / 4)
     return np.asarray(0.5 * (1 - np.cos(4 * math.pi * path / waves) * fading))

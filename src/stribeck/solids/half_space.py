@@ -55,10 +55,9 @@ def _clustered_rule(count: int) -> tuple[Array, Array]:
     return v**CLUSTER_POWER, 0.5 * w * CLUSTER_POWER * v ** (CLUSTER_POWER - 1)
 
 
-def deflection_by_mode(mesh: PolarMesh, modes: int | None = None, targets: Array | None = None) -> Array:
+def deflection_by_mode(mesh: PolarMesh) -> Array:
     """Return the matrices from the nodal pressures of each angular mode to its deflection."""
-    count = mesh.modes if modes is None else modes
-    radii = mesh.radii if targets is None else targets
+    count, radii = mesh.modes, mesh.radii
     found = np.zeros((count, radii.size, mesh.rings))
     centre, half = mesh.spans
     for panel in range(mesh.panels):

@@ -111,7 +111,7 @@ def _write_series(w: Array, tape: Tape, equations: Equations, u: Fields, inverse
             found[block] = row.coefficients[k]
         return found
 
-    implicit_series(w, coefficient, inverse, refines=True)
+    implicit_series(w, coefficient, inverse)
     tape.settle()
     tape.made.clear()  # what is made of these jets from now on has its coefficients at once
 
@@ -321,7 +321,7 @@ class LineProblem(LineStates):
         """Return an estimate of the radius of convergence of gap and observables."""
         of_values = found.observables[:, SERIES_COLUMNS] / self.scales(found.observables[:1], np.array([s]))[:, SERIES_COLUMNS]
         rounding = max(COEFFICIENT_NOISE, NEGLIGIBLE * self.tolerance)
-        return min(radius(each, 1.0, rounding) for each in (found.unknowns[:, : state.mesh.size], of_values))
+        return min(radius(each, rounding) for each in (found.unknowns[:, : state.mesh.size], of_values))
 
     def _guess(self, s: float, groups: Groups, near: Sequence[Expansion]) -> tuple[State, float]:
         """Return a guess of the state at ``s``, and the uncertainty of the logarithms of its unknowns."""
