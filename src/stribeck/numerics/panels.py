@@ -93,6 +93,14 @@ def between_orders(order: int, other: int) -> Array:
 
 
 @lru_cache(maxsize=32)
+def clustered(count: int, power: int) -> tuple[Array, Array]:
+    """Return nodes and weights on [0, 1] for what holds a logarithm at zero or just beyond: they crowd there with a power."""
+    nodes, weights = legendre.leggauss(count)
+    root = 0.5 * (1 + nodes)
+    return root**power, 0.5 * power * root ** (power - 1) * weights
+
+
+@lru_cache(maxsize=32)
 def towards_infinity(order: int) -> tuple[Array, Array, Array]:
     """Nodes and weights on [-1, 1] on panels that halve towards zero, and the interpolation to them."""
     edges = np.append(0.0, 2.0 ** -np.arange(order, -1, -1.0))

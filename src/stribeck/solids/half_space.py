@@ -21,14 +21,12 @@ Source: [DLMF] 14.5, 14.10 (recurrence in the degree), 19.5; Miller's algorithm:
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 import scipy
-from numpy.polynomial import legendre
 
 from stribeck._types import Array
 from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.numerics.panels import clustered, reference
 from stribeck.numerics.settings import HALF_DIGITS
 
 FAR_DISTANCE = 1.35  # Distance from the centre of a panel [half-widths] from which FAR_POINTS serve, with an error of 1e-12.
@@ -40,19 +38,6 @@ FARTHER_POINTS = 16  # Gauss points of a panel for targets from FARTHER_DISTANCE
 NEAR_POINTS = 40  # Gauss points on each part of a near panel.
 
 CLUSTER_POWER = 5  # Power with which the points of a near panel cluster towards the target.
-
-
-@lru_cache(maxsize=8)
-def _gauss(count: int) -> tuple[Array, Array]:
-    return legendre.leggauss(count)
-
-
-@lru_cache(maxsize=8)
-def _clustered_rule(count: int) -> tuple[Array, Array]:
-    """Return nodes and weights on [0, 1], clustered towards 0."""
-    t, w = _gauss(count)
-    v = 0.5 * (t + 1.0)
-    return v**CLUSTER_POWER, 0.5 * w * CLUSTER_POWER * v ** (CLUSTER_POWER - 1)
 
 
 def deflection_by_mode(mesh: PolarMesh) -> Array:
@@ -92,7 +77,7 @@ def tilt_from_beyond(mesh: PolarMesh, power: float) -> Array:
 
 def deflections_from_beyond(mesh: PolarMesh, power: float, modes: int) -> Array:
     """Return the same of the first modes, shape (modes, rings)."""
-    v, w = _clustered_rule(NEAR_POINTS)
+    v, w = clustered(NEAR_POINTS, CLUSTER_POWER)
     r, rim = mesh.radii[:, None], mesh.rim
     # s = rim/(1 - v), so that it reaches from the rim to infinity; far out the kernel falls as r/s**2.
     beyond = v / (1.0 - v) * rim
@@ -112,7 +97,7 @@ def _far_points(
     mesh: PolarMesh, panel: int, radii: Array, place: Array, count: int = FAR_POINTS
 ) -> tuple[Array, Array, Array]:
     """Return where the points lie on the panel, how far from the targets, and the weights over r."""
-    t, w = _gauss(count)
+    t, w = reference(count).nodes, reference(count).weights
     centre, half = mesh.spans[0][panel], mesh.spans[1][panel]
     r = centre + half * t
     weights = half * w
@@ -125,7 +110,7 @@ def _far_points(
 
 def _near_points(mesh: PolarMesh, panel: int, radii: Array, place: Array) -> tuple[Array, Array, Array]:
     """Return the same for near targets, on both parts of the panel; a part may be empty."""
-    v, w = _clustered_rule(NEAR_POINTS)
+    v, w = clustered(NEAR_POINTS, CLUSTER_POWER)
     half = float(mesh.spans[1][panel])
     inside = np.clip(place, -1.0, 1.0)[:, None]
     outside = place[:, None] - inside  # how far the target lies beyond the end of the panel

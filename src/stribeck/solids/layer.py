@@ -29,9 +29,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from stribeck._types import Array, Flags
+from stribeck._types import Array
 from stribeck.numerics.cells import Cells
-from stribeck.numerics.panels import Mesh, reference
+from stribeck.numerics.panels import Mesh, clustered, reference
 from stribeck.quantities.schema import Input, law
 from stribeck.solids.half_plane import nodal_deflection
 from stribeck.solids.solid import Lengths, Solid
@@ -50,18 +50,9 @@ CELL_TERMS = 6  # Coefficients of the polynomial on a cell.
 
 OWN_NODES_BELOW = 0.75  # Half-width of a panel [thicknesses] up to which its own nodes integrate the smooth part.
 
-# Error of the rule for the smooth part on wider panels, by the image two thicknesses below the target.
-SMOOTH_RULE_ERROR = 1e-13
-
-KERNEL_RULE_ABOVE = 6.0  # Half-width of a panel [thicknesses] above which its pressure is integrated over the kernel's radius.
-
 # Nodes over the kernel's radius on each side of a target, clustered by NEAR_CLUSTER_POWER: good to 1e-14 for a logarithm.
 NEAR_NODES = 64
 NEAR_CLUSTER_POWER = 8  # Power by which these nodes cluster towards the target.
-
-FAR_FROM_PANEL = 4.0  # Distance from a wide panel [thicknesses] above which the deflection is interpolated.
-FAR_TARGETS = 40  # Chebyshev targets of that interpolation.
-FAR_NODES = 32  # Evenly spread nodes over the kernel's radius for FAR_TARGETS.
 
 
 @law
@@ -115,17 +106,11 @@ class Layer(Solid):
         by_panels[second, :, first] = found.transpose(0, 2, 1)
         by_panels[first, :, second] = found
         smooth *= mesh.weights[:, None]
-        width = mesh.half_widths[:-1] / d
-        for k in np.flatnonzero((width > OWN_NODES_BELOW) & (width <= KERNEL_RULE_ABOVE)).tolist():
-            near = _sees_images(mesh, k, d)
-            smooth[k * mesh.order : (k + 1) * mesh.order, near] = self._of_wide_panel(mesh, k, mesh.nodes[near])
         kernel += smooth.T
         kernel[np.abs(mesh.nodes[:, None] - mesh.nodes) >= KERNEL_RADIUS * d] = 0.0
-        for k in np.flatnonzero(width > KERNEL_RULE_ABOVE).tolist():
-            column = kernel[:, k * mesh.order : (k + 1) * mesh.order]
+        for k in np.flatnonzero(mesh.half_widths[:-1] > OWN_NODES_BELOW * d).tolist():
             near = np.abs(mesh.nodes - mesh.centres[k]) < mesh.half_widths[k] + KERNEL_RADIUS * d
-            column[:] = 0.0
-            column[near] = self._by_whole_kernel(mesh, k, mesh.nodes[near])
+            kernel[near, k * mesh.order : (k + 1) * mesh.order] = self._by_whole_kernel(mesh, k, mesh.nodes[near])
         beyond = np.arange(mesh.size - mesh.order, mesh.size)
         kernel[:, beyond] = 0.0
         # On the panel through infinity, many thicknesses long, a layer yields to the pressure at each place, d S'(0) of it.
@@ -142,79 +127,27 @@ class Layer(Solid):
         found += math.log(self.layer_thickness) / math.pi
         return found
 
-    def _of_wide_panel(self, mesh: Mesh, k: int, x: Array) -> Array:
-        """Return what pressures at the nodes of a panel deflect at places ``x`` by the smooth part, shape (order, len(x))."""
-        half, d = float(mesh.half_widths[k]), self.layer_thickness
-        nodes, weights = _finer_rule(mesh.order, _nodes_for(half / d, mesh.order))
-        y = (float(mesh.centres[k]) + half * nodes)[:, None]
-        smooth = self._smooth_part(x, y)
-        beyond = np.abs(x - y) > KERNEL_RADIUS * d
-        smooth[beyond] = np.log(np.abs(x - y)[beyond]) / math.pi  # where the whole kernel is zero
-        return np.asarray((half * weights) @ smooth)
-
     def _by_whole_kernel(self, mesh: Mesh, k: int, x: Array) -> Array:
         """Return what pressures at the nodes of a panel deflect at places ``x`` by the whole kernel, shape (len(x), order)."""
         half, place = float(mesh.half_widths[k]) / self.layer_thickness, (x - mesh.centres[k]) / self.layer_thickness
-        panel = reference(mesh.order)
+        panel, (at, weights) = reference(mesh.order), clustered(NEAR_NODES, NEAR_CLUSTER_POWER)
 
-        def ahead(place: Array, steps: int, grading: int) -> Array:
+        def ahead(place: Array) -> Array:
             first, last = np.clip(-half - place, 0.0, KERNEL_RADIUS), np.clip(half - place, 0.0, KERNEL_RADIUS)
             found = np.zeros((len(place), mesh.order))
             some = last > first
-            # From afar it is a smooth function of the place, and the nodes in the contact lie close together.
-            far = some & (first > FAR_FROM_PANEL)
-            if 2 * half >= KERNEL_RADIUS - FAR_FROM_PANEL and np.count_nonzero(far) > FAR_TARGETS:
-                rule, middle, span = (
-                    reference(FAR_TARGETS),
-                    -half - 0.5 * (FAR_FROM_PANEL + KERNEL_RADIUS),
-                    0.5 * (KERNEL_RADIUS - FAR_FROM_PANEL),
-                )
-                there = ahead(middle + span * rule.nodes, FAR_NODES, 1)
-                found[far] = rule.interpolation((place[far] - middle) / span) @ there
-                some &= ~far
             first, length = first[some, None], (last - first)[some, None]
-            at, weights = _clustered_rule(steps, grading)
             away = first + length * at
             kernel = length * weights * (smooth_kernel(away, self.poisson_ratio) - np.log(away) / math.pi)
             polynomials = panel.polynomials(((place[some, None] + away) / half).ravel()).reshape(mesh.order, *away.shape)
             found[some] = np.einsum("rs,nrs->rn", kernel, polynomials) @ panel.to_legendre
             return found
 
-        both_sides = ahead(np.concatenate([place, -place]), NEAR_NODES, NEAR_CLUSTER_POWER)
-        to_right, to_left = self.layer_thickness * both_sides.reshape(2, len(x), -1)
-        return np.asarray(to_right + to_left[:, ::-1])
+        return np.asarray(self.layer_thickness * (ahead(place) + ahead(-place)[:, ::-1]))
 
     def far_gap(self, x: Array) -> Array:
         """Return ``x**2/2``."""
         return 0.5 * x**2
-
-
-def _sees_images(mesh: Mesh, k: int, thickness: float) -> Flags:
-    """Return the nodes at which a panel's own nodes do not integrate the smooth part of the kernel."""
-    # Polynomials on the panel converge by the ellipse through the image two thicknesses below the node.
-    image = (mesh.nodes - mesh.centres[k] + 2j * thickness) / mesh.half_widths[k]
-    return np.asarray(np.abs(image - 1) + np.abs(image + 1) < 2 * math.hypot(1.0, 2 / OWN_NODES_BELOW))
-
-
-def _nodes_for(half_width: float, order: int) -> int:
-    """Return how many nodes integrate the smooth part times the polynomials of a panel, with its half-width in thicknesses."""
-    rho = 2 / half_width + math.hypot(1.0, 2 / half_width)
-    return 4 * math.ceil((order - 1 - math.log(SMOOTH_RULE_ERROR) / math.log(rho)) / 8)
-
-
-@lru_cache(maxsize=64)
-def _finer_rule(order: int, count: int) -> tuple[Array, Array]:
-    """Return ``count`` nodes on [-1, 1] and the weights there of what is known at ``order`` nodes, shape (order, count)."""
-    nodes, weights = np.polynomial.legendre.leggauss(count)
-    return nodes, reference(order).interpolation(nodes).T * weights
-
-
-@lru_cache(maxsize=2)
-def _clustered_rule(count: int, grading: int) -> tuple[Array, Array]:
-    """Return nodes and weights on [0, 1] for what holds a logarithm at zero or just beyond, if they crowd there."""
-    nodes, weights = np.polynomial.legendre.leggauss(count)
-    root = 0.5 * (1 + nodes)
-    return root**grading, 0.5 * grading * root ** (grading - 1) * weights
 
 
 def transfer(x: Array, poisson_ratio: float) -> Array:
