@@ -72,14 +72,6 @@ def _rule_outside(order: int) -> tuple[Array, Array]:
 
 
 @lru_cache(maxsize=32)
-def _from_moments(order: int) -> Array:
-    """Matrix from the log moments to the integrals of the nodal (Lagrange) basis."""
-    rule = reference(order)
-    degrees = np.arange(order)
-    return np.asarray((degrees[:, None] + 0.5) * legendre.legvander(rule.nodes, order - 1).T * rule.weights)
-
-
-@lru_cache(maxsize=32)
 def _at_centre(order: int) -> Array:
     """Log integrals of the nodal basis at the middle of the panel."""
     return _log_integrals(np.zeros(1), order)
@@ -87,7 +79,7 @@ def _at_centre(order: int) -> Array:
 
 def _log_integrals(s: Array, order: int) -> Array:
     """Log integrals of the nodal basis at ``s``."""
-    return np.asarray(log_moments(s, order) @ _from_moments(order))
+    return np.asarray(log_moments(s, order) @ reference(order).to_legendre)
 
 
 def near_distance(order: int) -> float:
