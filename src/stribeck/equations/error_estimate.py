@@ -286,9 +286,8 @@ def position_error(mesh: Mesh, gap: Array, changes: Array, position: float, dept
     nodes = slice(panel * order, (panel + 1) * order)
     own, far = gap[nodes], mesh.far[nodes]
     logarithm = np.log(own / far)
-    first = rule.derivative @ rule.to_legendre
-    basis = np.polynomial.legendre.legvander(np.array([s]), order - 1)[0]
-    slope_of, curvature_of = basis @ first, basis @ rule.derivative @ first
+    slope_of = rule.interpolation(np.array([s]))[0] @ rule.derivative
+    curvature_of = slope_of @ rule.derivative
     growth = mesh.scale**2 + position**2
     slope = slope_of @ logarithm + 2 * width * position / growth
     curvature = curvature_of @ logarithm + 2 * width**2 * (mesh.scale**2 - position**2) / growth**2

@@ -7,7 +7,6 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import legendre
 
 from stribeck._types import Array, Indices
 from stribeck.numerics.panels import Mesh, interpolation_error, reference
@@ -43,23 +42,12 @@ def gap_beside(mesh: Mesh, h: Array, x: float) -> tuple[Any, Any, slice, Array]:
     """Return the gap and its slope at a coordinate in the contact, the nodes of its panel, and the row of ln(gap) there."""
     k = min(max(int(np.searchsorted(mesh.edges, x, side="right")) - 1, 0), mesh.panels - 2)
     width, nodes = float(mesh.half_widths[k]), slice(k * mesh.order, (k + 1) * mesh.order)
-    s, before, last = (x - float(mesh.centres[k])) / width, 0.0, 1.0
-    legendre_of_s = [last]
-    for n in range(mesh.order - 1):
-        before, last = last, ((2 * n + 1) * s * last - n * before) / (n + 1)
-        legendre_of_s.append(last)
-    row = np.array(legendre_of_s) @ reference(mesh.order).to_legendre
+    rule, s = reference(mesh.order), (x - float(mesh.centres[k])) / width
+    row = rule.interpolation(np.array([s]))[0]
     logs, far = np.log(h[..., nodes]) - np.log(mesh.far[nodes]), mesh.scale**2 + x * x
     value = np.exp(logs @ row) * far
-    slope = logs @ (row @ _slope_at_nodes(mesh.order)) / width
+    slope = logs @ (row @ rule.derivative) / width
     return value, value * (slope + 2 * x / far), nodes, row
-
-
-@lru_cache(maxsize=32)
-def _slope_at_nodes(order: int) -> Array:
-    """Return the matrix from nodal values to the slope of their polynomial at the nodes."""
-    rule = reference(order)
-    return np.asarray(legendre.legvander(rule.nodes, order - 1) @ rule.derivative @ rule.to_legendre)
 
 
 def minimum_gap(mesh: Mesh, h: Array) -> tuple[float, float]:
@@ -117,10 +105,8 @@ def _powers(t: Array, count: int) -> Array:
 @lru_cache(maxsize=32)
 def _taylor(order: int) -> Array:
     """Matrices, one a node, from nodal values to the Taylor coefficients of their polynomial about that node."""
-    rule = reference(order)
-    coefficients, factor = rule.to_legendre, 1.0
     found = np.empty((order, order, order))
-    for n in range(order):
-        found[:, n] = legendre.legvander(rule.nodes, order - 1) @ coefficients / factor
-        coefficients, factor = rule.derivative @ coefficients, factor * (n + 1)
+    found[:, 0] = np.eye(order)
+    for n in range(1, order):
+        found[:, n] = reference(order).derivative @ found[:, n - 1] / n
     return found

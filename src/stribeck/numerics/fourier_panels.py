@@ -16,31 +16,8 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from stribeck._types import Array, Indices
+from stribeck.numerics.panels import Rule
 from stribeck.quantities.lazy import cached_property
-
-
-@dataclass(frozen=True)
-class Rule:
-    """Nodes on ``[-1, 1]`` and what follows from them."""
-
-    nodes: Array
-    weights: Array
-    derivative: Array
-    """Nodal values -> nodal values of the derivative."""
-    to_legendre: Array
-    """Nodal values -> Legendre coefficients."""
-
-    def interpolation(self, points: Array) -> Array:
-        """Return the matrix from nodal values to those at ``points``, shape (..., nodes)."""
-        return np.asarray(legendre.legvander(points, self.nodes.size - 1) @ self.to_legendre)
-
-
-def _rule(nodes: Array, weights: Array) -> Rule:
-    degree = nodes.size - 1
-    vandermonde = legendre.legvander(nodes, degree)
-    to_legendre = np.linalg.inv(vandermonde)
-    derivative = legendre.legval(nodes, legendre.legder(np.eye(degree + 1))).T @ to_legendre
-    return Rule(nodes, weights, np.asarray(derivative), np.asarray(to_legendre, dtype=np.float64))
 
 
 @lru_cache(maxsize=32)
@@ -50,7 +27,7 @@ def lobatto(degree: int) -> Rule:
     inner = legendre.legroots(legendre.legder(highest))
     nodes = np.concatenate([[-1.0], np.sort(inner.real), [1.0]])
     weights = 2.0 / (degree * (degree + 1) * legendre.legval(nodes, highest) ** 2)
-    return _rule(nodes, weights)
+    return Rule.of(nodes, weights)
 
 
 @lru_cache(maxsize=32)
@@ -65,7 +42,7 @@ def radau(degree: int) -> Rule:
         inner = nodes[1:]
         nodes[1:] = inner - legendre.legval(inner, sums) / legendre.legval(inner, legendre.legder(sums))
     weights = (1.0 - nodes) / ((degree + 1) * legendre.legval(nodes, np.eye(degree + 1)[degree])) ** 2
-    return _rule(-nodes[::-1], weights[::-1])
+    return Rule.of(-nodes[::-1], weights[::-1])
 
 
 @dataclass(frozen=True, eq=False)

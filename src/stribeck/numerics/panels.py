@@ -32,8 +32,8 @@ class MeshTooLargeError(Exception):
 
 
 @dataclass(frozen=True)
-class Reference:
-    """The Gauss-Legendre rule on ``[-1, 1]`` and what follows from it, for one number of nodes."""
+class Rule:
+    """A rule on ``[-1, 1]`` and what follows from it, for one number of nodes."""
 
     nodes: Array
     weights: Array
@@ -46,38 +46,32 @@ class Reference:
     left_end: Array
     """Nodal values -> value at -1."""
     derivative: Array
-    """Legendre coefficients -> those of the derivative."""
+    """Nodal values -> nodal values of the derivative."""
+
+    @classmethod
+    def of(cls, nodes: Array, weights: Array) -> Rule:
+        """Return the rule with these nodes and weights."""
+        to_legendre = np.asarray(np.linalg.inv(legendre.legvander(nodes, nodes.size - 1)), dtype=np.float64)
+        antiderivatives = legendre.legint(np.eye(nodes.size), lbnd=-1)
+        return cls(
+            nodes=nodes,
+            weights=weights,
+            to_legendre=to_legendre,
+            integral=legendre.legval(nodes, antiderivatives).T @ to_legendre,
+            left_half=legendre.legval(0.0, antiderivatives) @ to_legendre,
+            left_end=legendre.legval(-1.0, np.eye(nodes.size)) @ to_legendre,
+            derivative=legendre.legval(nodes, legendre.legder(np.eye(nodes.size))).T @ to_legendre,
+        )
 
     def interpolation(self, points: Array) -> Array:
-        """Matrix from nodal values to the values at ``points`` of the interpolating polynomial."""
-        return self.polynomials(points).T @ self.to_legendre
-
-    def polynomials(self, points: Array) -> Array:
-        """Legendre polynomials below the number of nodes at ``points``, shape (degrees, len(points))."""
-        basis = np.empty((len(self.nodes), len(points)))
-        basis[0] = 1.0
-        basis[1] = points
-        for n in range(1, len(self.nodes) - 1):
-            np.multiply(points, basis[n], out=basis[n + 1])
-            basis[n + 1] *= (2 * n + 1) / (n + 1)
-            basis[n + 1] -= n / (n + 1) * basis[n - 1]
-        return basis
+        """Return the matrix from nodal values to those at ``points`` of the interpolating polynomial, shape (..., nodes)."""
+        return np.asarray(legendre.legvander(points, self.nodes.size - 1) @ self.to_legendre)
 
 
 @lru_cache(maxsize=32)
-def reference(order: int) -> Reference:
+def reference(order: int) -> Rule:
     """Return the Gauss-Legendre rule with ``order`` nodes."""
-    nodes, weights = legendre.leggauss(order)
-    degrees = np.arange(order)
-    vandermonde = legendre.legvander(nodes, order - 1)
-    to_legendre = (degrees[:, None] + 0.5) * vandermonde.T * weights
-    antiderivatives = legendre.legint(np.eye(order), lbnd=-1)
-    integral = legendre.legval(nodes, antiderivatives).T @ to_legendre
-    left_half = legendre.legval(0.0, antiderivatives) @ to_legendre
-    left_end = (-1.0) ** degrees @ to_legendre
-    derivative = np.zeros((order, order))
-    derivative[:-1] = legendre.legder(np.eye(order))
-    return Reference(nodes, weights, to_legendre, integral, left_half, left_end, derivative)
+    return Rule.of(*legendre.leggauss(order))
 
 
 @lru_cache(maxsize=32)

@@ -27,7 +27,7 @@ from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
-from numpy.polynomial import chebyshev
+from numpy.polynomial import chebyshev, legendre
 
 from stribeck._types import Array
 from stribeck.numerics.cells import Cells
@@ -139,8 +139,8 @@ class Layer(Solid):
             first, length = first[some, None], (last - first)[some, None]
             away = first + length * at
             kernel = length * weights * (smooth_kernel(away, self.poisson_ratio) - np.log(away) / math.pi)
-            polynomials = panel.polynomials(((place[some, None] + away) / half).ravel()).reshape(mesh.order, *away.shape)
-            found[some] = np.einsum("rs,nrs->rn", kernel, polynomials) @ panel.to_legendre
+            polynomials = legendre.legvander((place[some, None] + away) / half, mesh.order - 1)
+            found[some] = np.einsum("rs,rsn->rn", kernel, polynomials) @ panel.to_legendre
             return found
 
         return np.asarray(self.layer_thickness * (ahead(place) + ahead(-place)[:, ::-1]))
@@ -164,7 +164,7 @@ def transfer(x: Array, poisson_ratio: float) -> Array:
 @lru_cache(maxsize=16)
 def _on_cells(poisson_ratio: float) -> Cells:
     """Return the smooth kernel over ``0 <= xi <= KERNEL_RADIUS``, quick to evaluate."""
-    nodes, weights = np.polynomial.legendre.leggauss(24)
+    nodes, weights = legendre.leggauss(24)
     half = 0.5 * MAX_WAVENUMBER / WAVENUMBER_PANELS
     q = (half * (1 + 2 * np.arange(WAVENUMBER_PANELS)[:, None] + nodes)).ravel()
     weights = np.tile(half * weights, WAVENUMBER_PANELS)

@@ -20,7 +20,6 @@ Source: [Hunter 1961] for rolling on the standard linear solid; tested against P
 from __future__ import annotations
 
 import math
-from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -287,13 +286,5 @@ def hysteresis_friction(mesh: Mesh, solid: Solid, pressure: Array) -> float:
     """
     n = checked_kind("mesh", mesh, Mesh, "a Mesh of panels").order
     w = (solid.deflection(mesh) @ pressure)[:-n].reshape(-1, n)
-    slope = w @ _nodal_derivative(n).T / mesh.half_widths[:-1, None]
+    slope = w @ reference(n).derivative.T / mesh.half_widths[:-1, None]
     return float(2 / math.pi * (mesh.weights[:-n] * pressure[:-n]) @ slope.ravel())
-
-
-@lru_cache(maxsize=32)
-def _nodal_derivative(order: int) -> Array:
-    """Return the matrix from nodal values to nodal derivatives on [-1, 1]."""
-    rule = reference(order)
-    degrees = np.polynomial.legendre.legvander(rule.nodes, order - 1)
-    return np.asarray(degrees @ rule.derivative @ rule.to_legendre)

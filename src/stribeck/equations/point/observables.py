@@ -22,7 +22,6 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import legendre
 
 from stribeck._types import Array
 from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
@@ -271,12 +270,10 @@ class FrictionWithin:
 def _running(mesh: PolarMesh, local: Array) -> Array:
     """Return integrals over r from the centre to the nodes of each panel, of values of shape (..., panels, degree + 1)."""
     found = np.empty_like(local)
-    integrals = legendre.legint(np.eye(mesh.degree + 1), lbnd=-1.0)
     before = np.zeros(local.shape[:-2])
     for panel in range(mesh.panels):
-        rule = mesh.rule(panel)
-        matrix = legendre.legval(rule.nodes, integrals).T @ rule.to_legendre
-        found[..., panel, :] = before[..., None] + (local[..., panel, :] * mesh.stretch[panel]) @ matrix.T
+        inside = (local[..., panel, :] * mesh.stretch[panel]) @ mesh.rule(panel).integral.T
+        found[..., panel, :] = before[..., None] + inside
         before = found[..., panel, -1]
     return found
 
