@@ -59,7 +59,7 @@ def minimum_gap(mesh: Mesh, h: Array) -> tuple[float, float]:
 def minimum_gaps(mesh: Mesh, log_gap: Array) -> tuple[Array, Array, Array, Indices]:
     """Return place, value, error and panel of the minimum gap of many states, the logarithms on panels in x in rows."""
     order, rule, count = mesh.order, reference(mesh.order), len(log_gap)
-    panels, powers = log_gap.shape[1] // order, np.arange(order)
+    panels = log_gap.shape[1] // order
     shape = log_gap - np.log(mesh.far[:-order])
     k, about = np.divmod(np.argmin(log_gap, axis=1), order)
     start = rule.nodes[about]
@@ -69,20 +69,20 @@ def minimum_gaps(mesh: Mesh, log_gap: Array) -> tuple[Array, Array, Array, Indic
         start = np.append(start, at_end)
         k, about = np.append(k, beside), np.append(about, np.where(about == 0, order - 1, 0))
     own = shape.reshape(count, panels, order)[np.arange(len(k)) % count, k]
-    polynomial = np.einsum("rnj,rj->rn", _taylor(order)[about], own)
-    slopes, bends = polynomial[:, 1:] * powers[1:], polynomial[:, 2:] * powers[2:] * powers[1:-1]
-    c, d, s, origin = mesh.centres[k], mesh.half_widths[k], start, rule.nodes[about]
+    slopes = own @ rule.derivative.T
+    bends = slopes @ rule.derivative.T
+    c, d, s = mesh.centres[k], mesh.half_widths[k], start
     low, high = _brackets(order)[:, about]
     for _ in range(MAX_STEPS):
-        basis, x = _powers(s - origin, order), c + d * s
+        basis, x = rule.interpolation(s), c + d * s
         far = mesh.scale**2 + x * x
-        slope = np.einsum("rn,rn->r", basis[:, :-1], slopes) + 2 * d * x / far
-        bend = np.einsum("rn,rn->r", basis[:, :-2], bends) + 2 * d * d * (mesh.scale**2 - x * x) / far**2
+        slope = np.einsum("rn,rn->r", basis, slopes) + 2 * d * x / far
+        bend = np.einsum("rn,rn->r", basis, bends) + 2 * d * d * (mesh.scale**2 - x * x) / far**2
         last, s = s, np.minimum(np.maximum(s - slope / (np.abs(bend) + TINY), low), high)
         if np.abs(s - last).max() <= HALF_DIGITS:
             break
     x = c + d * s
-    value = np.einsum("rn,rn->r", _powers(s - origin, order), polynomial) + np.log(mesh.scale**2 + x * x)
+    value = np.einsum("rn,rn->r", rule.interpolation(s), own) + np.log(mesh.scale**2 + x * x)
     rows = np.arange(count)
     rows += np.where(value[-count:] < value[:count], len(k) - count, 0)
     return x[rows], np.exp(value[rows]), 2 * interpolation_error(own[rows]), k[rows]
@@ -93,20 +93,3 @@ def _brackets(order: int) -> Array:
     """Return the nodes or ends of a panel before and behind each node: the minimum around the lowest one lies between."""
     nodes = reference(order).nodes
     return np.array([np.append(-1.0, nodes[:-1]), np.append(nodes[1:], 1.0)])
-
-
-def _powers(t: Array, count: int) -> Array:
-    """Return the first powers of numbers, shape (len(t), count)."""
-    found = np.ones((len(t), count))
-    found[:, 1:] = t[:, None]
-    return np.multiply.accumulate(found, axis=1, out=found)
-
-
-@lru_cache(maxsize=32)
-def _taylor(order: int) -> Array:
-    """Matrices, one a node, from nodal values to the Taylor coefficients of their polynomial about that node."""
-    found = np.empty((order, order, order))
-    found[:, 0] = np.eye(order)
-    for n in range(1, order):
-        found[:, n] = reference(order).derivative @ found[:, n - 1] / n
-    return found
