@@ -33,6 +33,13 @@ def separation_at_pressure(shape: AsperityLaw, log_pressure: float) -> float:
     return 0.5 * (low + high)
 
 
+def effective_model(model: Model) -> Model:
+    """Return the model with exit in place of reformation at ambient pressure, where a cavity reaches to infinity."""
+    if model.cavitation is Cavitation.REFORM and model.cavity_pressure == 0.0:
+        return replace(model, cavitation=Cavitation.EXIT)
+    return model
+
+
 def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
     r"""Return the groups to solve for, whose gap is positive everywhere, and the shift to add to their gap [u_Hz].
 
@@ -47,11 +54,8 @@ def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
     contact they are s_0, :data:`SAFE_SEPARATION`.  Laws that diverge at zero need no shift.
     """
     if groups.speed > 0:
-        model = groups.model
-        if model.cavitation is Cavitation.REFORM and model.cavity_pressure == 0.0:
-            # A cavity at ambient pressure reaches to infinity.
-            groups = replace(groups, model=replace(model, cavitation=Cavitation.EXIT))
-        return groups, 0.0
+        model = effective_model(groups.model)
+        return (groups if model is groups.model else replace(groups, model=model)), 0.0
     if groups.model != BASE_MODEL:  # at rest neither the fluid nor the end of its film matters
         groups = replace(groups, model=Model(solid=groups.model.solid, profile=groups.model.profile))
     shape = groups.law

@@ -28,10 +28,10 @@ from stribeck.numerics.settings import MAX_BYTES
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, real_array, show
+from stribeck.solver.at_rest import effective_model
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.fields import Field, Profile
 from stribeck.solver.point.level import PROBLEMS
-from stribeck.solver.point.solve import effective_model
 from stribeck.solver.point.state import PointObservables, PointState
 from stribeck.solver.solve_error import SolveError, describe
 

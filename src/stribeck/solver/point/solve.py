@@ -54,7 +54,7 @@ from stribeck.numerics.settings import (
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solids.plane import BODIES, MIN_LAYER_THICKNESS
-from stribeck.solver.at_rest import with_positive_gap
+from stribeck.solver.at_rest import effective_model, with_positive_gap
 from stribeck.solver.point.estimate import Pair, pair_of
 from stribeck.solver.point.level import Level, extrapolate_levels, solve_level
 from stribeck.solver.point.refinement import follow, follow_reforming, full_model, holds, refine, refine_reforming
@@ -220,13 +220,6 @@ def same_kinds(model: Model, other: Model) -> bool:
     """Return whether models have the same film, solid and cavitation but for their numbers."""
     kinds = ((each.cavitation, type(each.film), each.film.name, type(each.solid)) for each in (model, other))
     return len(set(kinds)) == 1
-
-
-def effective_model(model: Model) -> Model:
-    """Return the model with exit in place of reformation at ambient pressure, where a cavity has no end."""
-    if model.cavitation is Cavitation.REFORM and model.cavity_pressure == 0.0:
-        return replace(model, cavitation=Cavitation.EXIT)
-    return model
 
 
 def check(groups: Groups, rtol: float) -> None:
