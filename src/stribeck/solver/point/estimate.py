@@ -9,7 +9,6 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.groups import Model
-from stribeck.equations.cavities.system import CavitatedSystem
 from stribeck.equations.film import closed_gap
 from stribeck.equations.point.observables import MINIMA, identity_error, observables, reach_of
 from stribeck.numerics.settings import (
@@ -21,9 +20,8 @@ from stribeck.numerics.settings import (
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import Level
 
-__all__ = ["LOOSE_OBSERVABLES", "WITHOUT_TOLERANCE", "Pair", "gap_tails", "modal_amplitudes", "pair_of"]
+__all__ = ["Pair", "gap_tails", "modal_amplitudes", "pair_of", "without_tolerance"]
 
-WITHOUT_TOLERANCE = MINIMA  # Observables whose stated errors rtol does not limit
 # Observables that rtol does not limit in cavitated films: streaks of the wake, and the moment of a thin contact whose panels
 # the rupture line crosses, are less accurate than the film.
 LOOSE_OBSERVABLES = ("J_couette", "J_balanced", "J_published", "J_pcx", "central_pressure")
@@ -63,7 +61,7 @@ class Pair:
     @property
     def total(self) -> float:
         """Largest error over its scale among the observables that a tolerance limits."""
-        apart = without_tolerance(self.fine)
+        apart = without_tolerance(self.fine.breaks)
         return max(error / self.scales[name] for name, error in self.errors.items() if name not in apart)
 
     @property
@@ -72,16 +70,14 @@ class Pair:
         return self.errors["minimum_gap"] / self.scales["minimum_gap"]
 
 
-def without_tolerance(level: Level) -> tuple[str, ...]:
-    """Return the observables of a state that no tolerance limits."""
-    breaks = isinstance(level.equations, CavitatedSystem)
-    return (*WITHOUT_TOLERANCE, *LOOSE_OBSERVABLES) if breaks else WITHOUT_TOLERANCE
+def without_tolerance(breaks: bool) -> tuple[str, ...]:
+    """Return the observables of a state, whose film perhaps breaks, that no tolerance limits."""
+    return (*MINIMA, *LOOSE_OBSERVABLES) if breaks else MINIMA
 
 
 def safety_of(level: Level) -> tuple[float, float]:
     """Return the stated error over the difference of two meshes, and the least such difference over the largest of all."""
     film, equations = level.resolution.model.film, level.equations
-    breaks = isinstance(equations, CavitatedSystem)
     closed_at = closed_gap(film)
     # Errors of a smooth flow fall exponentially, so that the finer mesh has hardly any; of one that thins or ends as a power.
     # Where roughness closes the flow, or gas goes by differences of first order, both meshes err by nearly the same.
@@ -90,7 +86,7 @@ def safety_of(level: Level) -> tuple[float, float]:
     # Before the last coefficients of the gap are as small as first meshes are chosen for, errors do not fall yet: either mesh
     # may be the nearer one, by chance.
     falls = max(gap_tails(level)) <= NEGLIGIBLE**2
-    if breaks or film.uses_speed:
+    if level.breaks or film.uses_speed:
         return 1.0 if falls else SAFETY, 1.0
     return SMOOTH_SAFETY if falls else SAFETY, NEGLIGIBLE
 
@@ -131,7 +127,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     safety, floor = safety_of(fine)
     differences = {name: abs(value - rough[name]) / scales[name] for name, value in values.items()}
     # Two meshes may agree by chance in one number, hardly in all.
-    apart = without_tolerance(fine)
+    apart = without_tolerance(fine.breaks)
     widest = max(differences[name] for name in values if name not in apart)
     errors = {
         name: (safety * max(differences[name], floor * widest) + fine.iterated.left) * scale for name, scale in scales.items()

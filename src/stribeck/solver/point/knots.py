@@ -11,7 +11,7 @@ import numpy as np
 from stribeck._types import Array, Flags
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.groups import Groups
-from stribeck.equations.point.observables import MINIMA, OBSERVABLES, WITHIN, identity_error
+from stribeck.equations.point.observables import OBSERVABLES, WITHIN, identity_error
 from stribeck.equations.point.system import Equations, Unknowns
 from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.hermite import weights_through
@@ -21,7 +21,7 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import AREA
 from stribeck.quantities.results import ByValue, equal_values
 from stribeck.solver.path.hermite_path import HermitePath, Knot
-from stribeck.solver.point.estimate import LOOSE_OBSERVABLES
+from stribeck.solver.point.estimate import without_tolerance
 from stribeck.solver.point.level import Level, predicted
 from stribeck.solver.point.sensitivity import changes_along, measured_change
 from stribeck.solver.point.solve import solve_cold, solve_from
@@ -85,9 +85,8 @@ class BallKnots:
     @cached_property
     def controlled(self) -> Flags:
         """All observables that ``rtol`` limits in a state."""
-        is_full = self.groups_at(0.0).model.cavitation is Cavitation.NONE
-        loose = (*MINIMA, *WITHIN) if is_full else (*MINIMA, *WITHIN, *LOOSE_OBSERVABLES)
-        return np.array([name not in loose for name in COLUMNS])
+        breaks = self.groups_at(0.0).model.cavitation is not Cavitation.NONE
+        return ~np.isin(COLUMNS, (*WITHIN, *without_tolerance(breaks)))
 
     def units(self, s: Array) -> Array:
         """Return the speeds for the friction integrals, which are proportional to it in boundary lubrication, else one."""

@@ -15,7 +15,7 @@ from stribeck.contacts.groups import Model
 from stribeck.equations.cavities.active_set import iterate_cavitated
 from stribeck.equations.cavities.exit import CavitatedEquations
 from stribeck.equations.cavities.reformation import ReformingEquations
-from stribeck.equations.cavities.system import just_above
+from stribeck.equations.cavities.system import CavitatedSystem, just_above
 from stribeck.equations.point.iteration import Iterated, iterate
 from stribeck.equations.point.mesh_choice import MeshTooLargeError, Resolution, bytes_of, operators_of
 from stribeck.equations.point.planes import plane_of
@@ -48,6 +48,11 @@ class Level:
     def outcome(self) -> Outcome:
         """How the iteration ended."""
         return self.iterated.outcome
+
+    @property
+    def breaks(self) -> bool:
+        """Whether the film may break by its equations."""
+        return isinstance(self.equations, CavitatedSystem)
 
     def relabelled(self, model: Model) -> Level:
         """Return the level relabelled with a model whose states start from it."""

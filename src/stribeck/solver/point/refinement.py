@@ -17,7 +17,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.groups import Model
-from stribeck.equations.cavities.system import CavitatedSystem, just_above
+from stribeck.equations.cavities.system import just_above
 from stribeck.equations.point.mesh_choice import (
     MeshTooLargeError,
     Resolution,
@@ -321,7 +321,7 @@ def refine_reforming(
 ) -> Pair | Outcome:
     """Return a state that holds a tolerance, from a coarse one or a ``known`` one with a larger error, or the best found."""
     full = guess.relabelled(full_model(model))
-    if known is not None and not isinstance(known.fine.equations, CavitatedSystem):
+    if known is not None and not known.fine.breaks:
         return _refine_full_film(speed, law, full, rtol, model, known) or refine(speed, law, guess, rtol, model)
     if known is None and guess.unknowns.fluid.min() >= model.cavity_pressure:
         found = _refine_full_film(speed, law, full, rtol, model)
@@ -341,7 +341,7 @@ def follow_reforming(
 ) -> Pair | None:
     """Return the state of other groups from a neighbour, on its meshes if they serve; None if the iteration fails."""
     model = neighbour.fine.resolution.model
-    if isinstance(neighbour.fine.equations, CavitatedSystem):
+    if neighbour.fine.breaks:
         found = follow(speed, law, neighbour, rtol, prediction)
         if found is None or is_cavitated(found):
             return found

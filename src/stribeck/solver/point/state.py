@@ -27,7 +27,7 @@ from stribeck.numerics.settings import PLACES_AROUND_NODE
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import AREA
-from stribeck.solver.point.estimate import LOOSE_OBSERVABLES, WITHOUT_TOLERANCE, Pair
+from stribeck.solver.point.estimate import Pair, without_tolerance
 
 # Friction integrals whose errors are relative to themselves; J_pcx vanishes in full films, so its scale is the friction.
 SELF_SCALED = ("J_couette", "J_poiseuille", "J_balanced", "J_published")
@@ -81,8 +81,7 @@ class PointState:
     @property
     def error_estimate(self) -> float:
         """Largest estimated error among the observables that rtol limits."""
-        is_full = self.groups.model.cavitation is Cavitation.NONE
-        apart = WITHOUT_TOLERANCE if is_full else (*WITHOUT_TOLERANCE, *LOOSE_OBSERVABLES)
+        apart = without_tolerance(self.groups.model.cavitation is not Cavitation.NONE)
         return max((error for name, error in self.errors.items() if name not in apart), default=math.nan)
 
     @cached_property
