@@ -18,7 +18,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -27,7 +26,7 @@ from stribeck._types import Array
 from stribeck.contacts.cut_off import FULL_FAR_FILM, FarFilm
 from stribeck.equations.point.far_field import tails
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
-from stribeck.numerics.fourier_panels import PolarMesh, radau
+from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.numerics.settings import EPSILON, HALF_DIGITS, MAX_STEPS, NEAR_MINIMUM
 
 
@@ -68,8 +67,7 @@ def minimum_on_axis(mesh: PolarMesh, h: Array) -> Minimum:
 
 def centre(mesh: PolarMesh, h: Array) -> Minimum:
     """Return the gap at the centre."""
-    row = mesh.rule(0).interpolation(np.array([-1.0]))[0]
-    return Minimum(float(row @ h[:, mesh.of_panel[0]].mean(axis=0)), 0.0, 0.0)
+    return Minimum(at_centre(mesh, h), 0.0, 0.0)
 
 
 def reach_of(mesh: PolarMesh, h: Array, radius: float, angle: float, depth: float) -> tuple[float, float]:
@@ -167,13 +165,7 @@ WITHIN = ("within_couette", "within_poiseuille", "within_edge")
 
 def at_centre(mesh: PolarMesh, field: Array) -> float:
     """Return the value of a nodal field at the centre: that of its axisymmetric mode, the others vanish there."""
-    return float(_to_centre(mesh.degree) @ field[:, mesh.of_panel[0]].mean(axis=0))
-
-
-@cache
-def _to_centre(degree: int) -> Array:
-    """Return the weights of the nodes of the first panel in a value at the centre."""
-    return np.asarray(radau(degree).interpolation(np.array([-1.0]))[0])
+    return float(mesh.rule(0).left_end @ field[:, mesh.of_panel[0]].mean(axis=0))
 
 
 def observables(equations: Equations, y: Unknowns) -> dict[str, float]:
