@@ -36,23 +36,22 @@ from stribeck.equations.film import is_thinning, jump_of
 from stribeck.equations.line import LOAD, Equations, Fields
 from stribeck.equations.observables import (
     DRAG_ROWS,
+    GAP_ROWS,
+    POSITION_ROWS,
     ROW,
+    SHARE_ROWS,
     Observables,
     changes,
     coordinate,
-    drag_scales,
+    error_scales,
     stretch_of,
 )
 from stribeck.equations.state import State
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
-from stribeck.numerics.settings import DEFECT_SAFETY, EPSILON, FLOOR, NEGLIGIBLE, ROUNDING, SAFETY, SIGN_PATTERNS
+from stribeck.numerics.settings import DEFECT_SAFETY, EPSILON, NEGLIGIBLE, ROUNDING, SAFETY, SIGN_PATTERNS
 from stribeck.numerics.trace import Trace, act
 from stribeck.quantities.lazy import cached_property
-from stribeck.quantities.outputs import ABSOLUTE, NAMES, RUPTURE_ROWS
-
-SHARE_ROWS = [ROW[name] for name in ABSOLUTE]
-GAP_ROWS = [ROW["central_gap"], ROW["minimum_gap"]]
-POSITION_ROWS = [ROW[row.name] for row in RUPTURE_ROWS]
+from stribeck.quantities.outputs import NAMES
 
 
 @dataclass(frozen=True)
@@ -252,14 +251,7 @@ def error_estimate(state: State, observed: Observables, fine: FineOperators) -> 
     effects[0, DRAG_ROWS] += changed.friction
     interpolation = np.zeros_like(values)
     interpolation[GAP_ROWS] = interpolation_errors(mesh, u.gap, place, coordinate(u, 0.0))
-    scales = np.abs(values)
-    scales[POSITION_ROWS] = np.maximum(1.0, scales[POSITION_ROWS])
-    scales[DRAG_ROWS] = drag_scales(values)
-    scales[SHARE_ROWS] = 1.0
-    scales[ROW["offset"]] = max(scales[ROW["offset"]], scales[ROW["central_gap"]])
-    if not equations.is_sliding:
-        scales[GAP_ROWS] = np.maximum(scales[GAP_ROWS], FLOOR * equations.law.decay_length)
-    scales[scales == 0] = 1.0
+    scales = error_scales(values, None if equations.is_sliding else float(equations.law.decay_length))
     rounding = SAFETY * np.sqrt((effects[1:] ** 2).mean(axis=0))
     minimum = ROW["minimum_gap"]
     depth = (effects[0, minimum] + interpolation[minimum] + rounding[minimum]) / u.gap.min()

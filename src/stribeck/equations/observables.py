@@ -20,9 +20,9 @@ from stribeck.equations.gap import gap_beside, minimum_gap
 from stribeck.equations.line import LOAD, Equations, Fields
 from stribeck.equations.state import State
 from stribeck.numerics.panels import Mesh
-from stribeck.numerics.settings import LOG_STEP
+from stribeck.numerics.settings import FLOOR, LOG_STEP
 from stribeck.numerics.trace import Trace, act, value_of
-from stribeck.quantities.outputs import ALL_NAMES, GROUPS
+from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, GROUPS, RUPTURE_ROWS
 
 __all__ = [
     "ROW",
@@ -42,6 +42,9 @@ ROW = {name: row for row, name in enumerate(ALL_NAMES)}  # Index of each in such
 VISCOUS = ("viscous_published", "viscous_balanced", "viscous_upper")
 ALONG = "along"  # Name of directions in traces
 DRAG_ROWS = [ROW[name] for name in VISCOUS]
+SHARE_ROWS = [ROW[name] for name in ABSOLUTE]
+GAP_ROWS = [ROW["central_gap"], ROW["minimum_gap"]]
+POSITION_ROWS = [ROW[row.name] for row in RUPTURE_ROWS]
 
 
 @dataclass(frozen=True)
@@ -78,6 +81,20 @@ def drag_scales(values: Array) -> Array:
     np.fmax(balanced, upper, out=balanced)
     upper[...] = balanced
     np.fmax(published, balanced, out=published)
+    return found
+
+
+def error_scales(values: Array, decay_length: Array | float | None) -> Array:
+    """Return the scales of errors of values, shape (..., rows): these, bounded from below where they may vanish."""
+    # ``decay_length`` is that of a contact at rest, None of a moving one.
+    found = np.abs(values)
+    found[..., SHARE_ROWS] = 1.0
+    found[..., POSITION_ROWS] = np.fmax(1.0, found[..., POSITION_ROWS])
+    found[..., DRAG_ROWS] = drag_scales(values)
+    found[..., ROW["offset"]] = np.maximum(found[..., ROW["offset"]], found[..., ROW["central_gap"]])
+    if decay_length is not None:
+        found[..., GAP_ROWS] = np.maximum(found[..., GAP_ROWS], FLOOR * decay_length)
+    found[found == 0] = 1.0
     return found
 
 

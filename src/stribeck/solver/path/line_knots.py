@@ -12,15 +12,14 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.contacts.groups import Groups
-from stribeck.equations.error_estimate import GAP_ROWS
-from stribeck.equations.observables import DRAG_ROWS, ROW, drag_scales, minimum_of
+from stribeck.equations.observables import DRAG_ROWS, GAP_ROWS, ROW, error_scales, minimum_of
 from stribeck.equations.sensitivity import derivatives_along
 from stribeck.equations.state import State
-from stribeck.numerics.settings import EPSILON, FLOOR, LOG_STEP, NEGLIGIBLE, SHARE
+from stribeck.numerics.settings import EPSILON, LOG_STEP, NEGLIGIBLE, SHARE
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES
+from stribeck.quantities.outputs import ALL_NAMES
 from stribeck.solver.neighbours import Neighbours
 from stribeck.solver.path.hermite_path import HermitePath, Knot
 from stribeck.solver.refinement import RefinedState
@@ -28,7 +27,6 @@ from stribeck.solver.refinement import RefinedState
 COLUMNS = (*ALL_NAMES, "minimum_position")  # Columns of a path by name
 POSITION = len(ALL_NAMES)  # Column of the minimum gap's position, after those of the observables
 UNCONTROLLED_COLUMNS = [POSITION, ROW["exit_position"], ROW["reformation_position"]]
-SHARE_COLUMNS = [ROW[name] for name in ABSOLUTE]
 
 
 class LineStates:
@@ -52,15 +50,9 @@ class LineStates:
 
     def scales(self, values: Array, s: Array) -> Array:
         """Return the scales of errors: the observables, bounded from below if they may vanish."""
-        found = np.abs(values)
-        found[:, SHARE_COLUMNS] = 1.0
-        found[:, ROW["exit_position"] :] = 1.0
-        found[:, ROW["offset"]] = np.maximum(found[:, ROW["offset"]], found[:, ROW["central_gap"]])
-        found[:, DRAG_ROWS] = drag_scales(values)
-        if not self.moves:
-            kappa = np.array([float(self.groups_at(c).relative_roughness) for c in s.tolist()])
-            found[:, GAP_ROWS] = np.maximum(found[:, GAP_ROWS], FLOOR * kappa[:, None])
-        found[found == 0] = 1.0
+        kappa = None if self.moves else np.array([[float(self.groups_at(c).relative_roughness)] for c in s.tolist()])
+        found = error_scales(values, kappa)
+        found[:, POSITION:] = 1.0
         return found
 
     def accepted(self, refined: RefinedState) -> RefinedState | Outcome:
