@@ -71,12 +71,6 @@ def _rule_outside(order: int) -> tuple[Array, Array]:
     return nodes, weights[:, None] * legendre.legvander(nodes, order - 1)
 
 
-@lru_cache(maxsize=32)
-def _at_centre(order: int) -> Array:
-    """Log integrals of the nodal basis at the middle of the panel."""
-    return _log_integrals(np.zeros(1), order)
-
-
 def _log_integrals(s: Array, order: int) -> Array:
     """Log integrals of the nodal basis at ``s``."""
     return np.asarray(log_moments(s, order) @ reference(order).to_legendre)
@@ -132,17 +126,16 @@ def _beside_panel(s: Array, order: int) -> Array:
     return found
 
 
-def _beside_infinity(x: Array, order: int) -> Array:
-    """Integrals of ``ln|1 - x t|`` times the nodal basis of the panel through infinity, ``-1 < t < 1``, at targets x."""
-    rule = reference(order)
-    close = np.abs(x) * near_distance(order) > 1.0
-    ratio = x[:, None] * rule.nodes
-    ratio[close] = 0.0
-    found = np.log1p(-ratio) * rule.weights
-    if close.any():
-        s = 1 / x[close]
-        found[close] = _log_integrals(s, order) - np.log(np.abs(s))[:, None] * rule.weights
-    return found
+def _from_tail(x: Array, centre: float, half: float, order: int) -> Array:
+    """Return -pi times what densities ``p x**2`` at the nodes of a panel in ``t = 1/x`` deflect at x, less at infinity."""
+    # The integrals of ln|1 - x t| times the nodal basis.
+    rule, s = reference(order), (1 / x - centre) / half
+    far = np.abs(s) >= near_distance(order)
+    found = np.empty((len(x), order))
+    found[far] = np.log1p(-x[far, None] * (centre + half * rule.nodes)) * rule.weights
+    found[~far] = _log_integrals(s[~far], order) + np.log(half * np.abs(x[~far]))[:, None] * rule.weights
+    at_infinity = _log_integrals(np.array([-centre / half]), order) + np.log(half) * rule.weights
+    return np.asarray(half * (found - at_infinity))
 
 
 def nodes_on_panel(centre: Array, half_width: Array, nodes: Array) -> Array:
@@ -185,32 +178,16 @@ def nodal_deflection(mesh: Mesh, beyond: bool = True) -> Array:
     half = mesh.half_widths[outermost]
     near = blocks(nodes_at_infinity, _beside_panel, places[outermost], order).transpose(0, 2, 1)
     kernel[outermost, :, -1, :] = half[:, None, None] * (near + (np.log(half)[:, None] * rule.weights)[:, :, None])
-    columns[-order:] = _columns_of_infinity(mesh) if beyond else 0.0
+    columns[-order:] = 0.0
+    if beyond:
+        columns[-order:] = (_from_tail(mesh.nodes, 0.0, mesh.half_widths[-1], order) * mesh.stretch[-order:]).T
     columns *= -1 / np.pi
     return columns.T
 
 
-def _columns_of_infinity(mesh: Mesh) -> Array:
-    """Return -pi times what pressures at the nodes of the panel through infinity deflect, shape (order, size)."""
-    order, rule = mesh.order, reference(mesh.order)
-    tail = _beside_infinity(mesh.nodes * mesh.half_widths[-1], order)
-    at_infinity = _at_centre(order) + np.log(mesh.half_widths[-1]) * rule.weights
-    factor = mesh.half_widths[-1] * mesh.stretch[-order:]
-    return np.asarray((factor * (tail - at_infinity)).T)
-
-
 def deflection_by_half_tail(tail: HalfTail) -> Array:
     """Return the matrix from densities ``p x**2`` at the nodes of half the panel through infinity to the deflection."""
-    mesh, half, x = tail.mesh, tail.half_width, tail.mesh.nodes
-    order = mesh.order
-    weights = reference(order).weights
-    s = (1 / x + half) / half
-    far = np.abs(s) >= near_distance(order)
-    found = np.empty((len(x), order))
-    found[far] = np.log1p(-x[far, None] * tail.nodes) * weights
-    found[~far] = _log_integrals(s[~far], order) + np.log(half * np.abs(x[~far]))[:, None] * weights
-    at_infinity = _log_integrals(np.ones(1), order) + np.log(half) * weights
-    return np.asarray(half * (found - at_infinity) / -np.pi)
+    return _from_tail(tail.mesh.nodes, -tail.half_width, tail.half_width, tail.mesh.order) / -np.pi
 
 
 @dataclass(frozen=True)
