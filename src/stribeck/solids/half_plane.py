@@ -83,17 +83,9 @@ def near_distance(order: int) -> float:
 
 
 def nodes_of(targets: Callable[[Array, Array, Array], Array], places: Array, order: int) -> Array:
-    """Return where the nodes of panels are, seen from others, shape (pairs, order), see :func:`blocks`."""
+    """Return where the nodes of panels are, seen from others, shape (pairs, order)."""
     centres, half_widths = places.T[:, :, None]
     return targets(centres, half_widths, reference(order).nodes)
-
-
-def blocks(
-    targets: Callable[[Array, Array, Array], Array], compute: Callable[[Array, int], Array], places: Array, order: int
-) -> Array:
-    """Return what panels do at the nodes of others, shape (pairs, order, columns)."""
-    found = compute(nodes_of(targets, places, order).ravel(), order)
-    return found.reshape(len(places), order, -1)
 
 
 def near_panels(mesh: Mesh) -> tuple[Indices, Indices, Array]:
@@ -148,6 +140,13 @@ def nodes_at_infinity(centre: Array, half_width: Array, nodes: Array) -> Array:
     return np.asarray((1 / nodes - centre) / half_width)
 
 
+def _near_blocks(targets: Callable[..., Array], places: Array, half: Array, order: int) -> Array:
+    """Return what pressures at the nodes of panels do at those of others near them, shape (pairs, order, order)."""
+    near = _beside_panel(nodes_of(targets, places, order).ravel(), order).reshape(len(places), order, order)
+    scaled = np.log(half)[:, None] * reference(order).weights
+    return np.asarray(half[:, None, None] * (near.transpose(0, 2, 1) + scaled[:, :, None]))
+
+
 def nodal_deflection(mesh: Mesh, beyond: bool = True) -> Array:
     r"""Return the matrix from nodal pressures to the deflection at the nodes, in Fortran order.
 
@@ -156,28 +155,20 @@ def nodal_deflection(mesh: Mesh, beyond: bool = True) -> Array:
     Pressures on the panel through infinity deflect something only if ``beyond``.
     """
     order, panels = mesh.order, mesh.panels
-    rule, inner = reference(order), mesh.nodes[:-order]
     # By columns, so that the operator comes in Fortran order: what panel k does at the nodes of panel l is [k, :, l, :].
     kernel = np.empty((panels, order, panels, order))
     columns = kernel.reshape(mesh.size, mesh.size)
     # In the memory of the operator: new memory for each step costs more than the steps.
-    distance = np.subtract.outer(inner, mesh.nodes, out=columns[:-order])
+    distance = np.subtract.outer(mesh.nodes[:-order], mesh.nodes, out=columns[:-order])
     np.abs(distance, out=distance)
     distance[distance == 0] = 1.0
     np.log(distance, out=distance)
     distance *= mesh.weights[:-order, None]
     target, source, places = near_panels(mesh)
-    half = mesh.half_widths[source]
-    near = (
-        blocks(nodes_on_panel, _beside_panel, places, order).transpose(0, 2, 1)
-        + (np.log(half)[:, None] * rule.weights)[:, :, None]
-    )
-    kernel[source, :, target, :] = half[:, None, None] * near
+    kernel[source, :, target, :] = _near_blocks(nodes_on_panel, places, mesh.half_widths[source], order)
     outermost = np.flatnonzero(near_infinity(mesh))
-    places = panels_from_infinity(mesh)
-    half = mesh.half_widths[outermost]
-    near = blocks(nodes_at_infinity, _beside_panel, places[outermost], order).transpose(0, 2, 1)
-    kernel[outermost, :, -1, :] = half[:, None, None] * (near + (np.log(half)[:, None] * rule.weights)[:, :, None])
+    places = panels_from_infinity(mesh)[outermost]
+    kernel[outermost, :, -1, :] = _near_blocks(nodes_at_infinity, places, mesh.half_widths[outermost], order)
     columns[-order:] = 0.0
     if beyond:
         columns[-order:] = (_from_tail(mesh.nodes, 0.0, mesh.half_widths[-1], order) * mesh.stretch[-order:]).T
