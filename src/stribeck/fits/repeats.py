@@ -236,12 +236,15 @@ def _steps(rows: Sequence[Row], runs: Sequence[str], tolerance: float) -> tuple[
     ramped = False
     for mine in _blocks(rows, runs).values():
         found = list[_Step]()
+        total = 0.0  # of the logarithms of the speeds of the last step
         for row, run in mine:
-            speeds = [each[2] for each in found[-1].rows] if found and found[-1].run == run else []
-            if speeds and abs(math.log(row[2] / float(np.median(speeds)))) <= tolerance:
+            speed = math.log(row[2])
+            if found and found[-1].run == run and abs(speed - total / len(found[-1].rows)) <= tolerance:
                 found[-1].rows.append(row)
+                total += speed
             else:
                 found.append(_Step([row], run))
+                total = speed
         if _is_ramp(found):
             ramped = True
             steps += [_Step([row], run) for row, run in mine]
