@@ -295,7 +295,7 @@ class Band:
     """The 95 % interval of the friction along a curve."""
 
     values: Array  # Speeds, loads or roughnesses at which errors were propagated, in SI units
-    low: Array  # Lower end of the interval over the friction for the inputs as given [-]
+    low: Array  # Lower end of the interval over the friction for the inputs as given [-]; nan where it is not settled
     high: Array  # Upper end of the same
 
     def along(self, values: Array, friction: Array) -> tuple[Array, Array]:
@@ -319,13 +319,16 @@ def friction_band(
     found = []
     for i, value in enumerate(np.geomspace(ends[0], ends[1], count).tolist()):
         try:
-            spread = propagate(contact.replace(**{over: value}), errors, definition=definition, transitions=False)["friction"]
+            state = propagate(contact.replace(**{over: value}), errors, definition=definition, transitions=False)
         except (InputError, SolveError):
             continue
         finally:
             if on_point is not None:
                 on_point(i + 1, count)
-        if spread.value != 0:
+        spread = state["friction"]
+        if state.notes:  # a picture has no place to say by how much its ends are wrong
+            found.append((value, math.nan, math.nan))
+        elif spread.value != 0:
             low, high = sorted(end / spread.value for end in spread.interval_95)
             found.append((value, max(low, 0.0), high))
-    return Band(*np.array(found).T) if len(found) > 1 else None
+    return Band(*np.array(found).T) if sum(not math.isnan(low) for _, low, _ in found) > 1 else None

@@ -248,7 +248,7 @@ def _sampled_until_confirmed(
             wrong = max(wrong, differences.max(initial=0.0 if new else math.inf))
             known += [(places[i], state) for i, state in new.items()]
         if wrong <= INTERVAL_END_RTOL * width or tried.sum() + 3 * some > MAX_SOLVED_SAMPLES:
-            found = _read(known, places, lengths, logs)
+            # Not as read once more, between all of them: that may be far off, and nothing would tell.
             return found, _interval_notes(wrong / width if width else 0.0, int(tried.sum()), len(known) - 1)
 
 
