@@ -201,3 +201,13 @@ def test_the_stated_error_of_friction_of_a_fluid_that_thins_covers_the_solved_on
     found = sb.fit(data, case, free=["viscosity"], intervals=False)
     solved = sb.solve(found.contact.replace(speed=speeds[1]), rtol=1e-4).friction().total
     assert abs(found.friction[1] / solved - 1) <= found.model_error + 1e-4 <= 3e-2
+
+
+def test_a_fit_of_a_ball_in_a_drop_counts_the_friction_up_to_its_rim():
+    """With the friction of a far film exact data gave 86 mPa s for 100."""
+    given = dict(radius=0.01, modulus=2e6, load=0.9, viscosity=0.1, speed=1.0, alpha=2, beta=0.1, boundary_friction=0.5)
+    drop = sb.PointContact(**given, roughness=4.5e-7, wetted_radius=3e-3)
+    speeds = np.array([1.0, 1.5, 2.0])
+    data = measured(frictions(drop, speeds), speeds)
+    found = sb.fit(data, drop.replace(viscosity=0.12), free=["viscosity"], intervals=False)
+    assert found.contact.viscosity == pytest.approx(0.1, rel=2e-3)

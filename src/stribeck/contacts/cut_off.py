@@ -141,6 +141,24 @@ def friction_integral(
     return np.where(moves, found, 0.0)[()]
 
 
+FAR_PARTS = ("J_couette", "J_poiseuille", "J_pcx")  # Parts of the friction of a film that is far away where it ends
+
+
+def far_parts(
+    parts: Mapping[str, Any], speed: Any, cut_offs: tuple[float, float], is_disc: bool, far: FarFilm
+) -> dict[str, Any]:
+    """Return :data:`FAR_PARTS` with which a far film has the friction of a film with ``parts`` up to where it ends."""
+    by_shear, by_pressure = cut_offs
+    unit, edge = far.couette * speed, far.poiseuille * speed
+    shear = (parts["J_couette"] + parts["within_couette"]) / unit + by_shear
+    minus_log_start = shear + 0.5 * np.log1p(-np.exp(-2.0 * shear)) - by_shear
+    at_pressure = np.exp(-2.0 * (minus_log_start + by_pressure))
+    missed = at_pressure / (1.0 + at_pressure)
+    poiseuille = parts["J_poiseuille"] + parts["within_poiseuille"] - edge * (far.rise * missed + 0.5 * np.log1p(at_pressure))
+    at_edge = parts["within_edge"] + edge * missed if is_disc else 0.0
+    return {"J_couette": unit * minus_log_start, "J_poiseuille": poiseuille, "J_pcx": parts["J_pcx"] - at_edge}
+
+
 def far_error(
     parts: Mapping[str, Any], speed: Any, slide_to_roll: Any, wetted_radius: Any, far: FarFilm = FULL_FAR_FILM
 ) -> Any:

@@ -98,7 +98,8 @@ class FrictionModel:
         by = tuple(name for name, is_moved in zip(GROUPS, moves, strict=True) if is_moved)
         # Whether a table holds for all contacts, wherever in its box their states lie.
         is_one = len({each.groups.model for each in self.contacts}) == 1 and self.is_constant and not any(self.moving)
-        in_atlas = is_one and atlas.for_groups(self.contact.groups) is not None
+        is_far = all(self.rule.is_enough(each.groups.model, [self.rule.of_contact(each)]) for each in self.contacts)
+        in_atlas = is_one and is_far and atlas.for_groups(self.contact.groups) is not None
         return States(self.contact, by, in_atlas, definition, rtol, on_state)
 
     def count_states(self, rtol: float) -> int:

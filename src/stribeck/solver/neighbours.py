@@ -13,11 +13,12 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.cut_off import log_cut_offs
+from stribeck.contacts.cut_off import FAR_PARTS, far_film, far_parts, is_far, log_cut_offs
 from stribeck.contacts.groups import Groups
 from stribeck.equations.point.observables import WITHIN
 from stribeck.equations.sensitivity import Change
 from stribeck.numerics.continuation import steady_weights
+from stribeck.numerics.dual import Dual
 from stribeck.numerics.settings import HALF_DIGITS, MAX_AMPLIFICATION, MAX_STATES, SLOPE_RESIDUAL
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outputs import AREA, GROUPS
@@ -206,9 +207,9 @@ class _BallSteps:
         groups = state.groups
         if groups.roughness == 0:  # what touches nowhere has neither
             names = ["contact_load_share" if name == AREA else name for name in names]
-        thins = groups.model.film.uses_speed and WITHIN[0] not in names
+        ends_near = WITHIN[0] not in names and not is_far(groups.model, inputs["wetted_radius"])
         cut_offs = None
-        if thins or WITHIN[0] in names:
+        if ends_near or WITHIN[0] in names:
             cut_offs = log_cut_offs(float(groups.slope(inputs["beta"])), inputs["wetted_radius"])
         measure = partial(measured, law=groups.law if AREA in names else None, cut_offs=cut_offs)
         known = {name: (value, state.relative_errors[name]) for name, value in state.values.items()}
@@ -227,12 +228,18 @@ class _BallSteps:
             along = derivatives_along(state, directions, measure, SLOPE_RESIDUAL * self.rtol)
             slopes = {name: np.append(slopes[name], each) for name, each in along.items()}
         found = np.array([slopes.get(name, np.zeros(len(GROUPS))) for name in names])
-        for name, of in zip(("J_couette", "J_poiseuille") if thins else (), WITHIN, strict=False):
-            row, (beyond, _) = names.index(name), known[of]
-            wrong = errors[row] * abs(values[row]) + abs(beyond)
-            values[row] += beyond
-            found[row] += slopes[of]
-            errors[row] = wrong / (abs(values[row]) or state.scales[name])
+        if cut_offs is not None and ends_near:
+            is_disc = math.isfinite(inputs["wetted_radius"])
+            parts = {name: Dual(known[name][0], slopes[name]) for name in (*FAR_PARTS, *WITHIN)}
+            speed = float(groups.speed)
+            by_speed = Dual(speed, speed * np.eye(found.shape[1])[0])
+            for name, part in far_parts(parts, by_speed, cut_offs, is_disc, far_film(groups.model)).items():
+                if name in names:
+                    row = names.index(name)
+                    # What a fluid thins far out depends on where a whole ball ends, which moves with beta.
+                    wrong = errors[row] * abs(values[row]) + (0.0 if is_disc else abs(part.value - values[row]))
+                    values[row], found[row] = part.value, part.slope
+                    errors[row] = wrong / (abs(values[row]) or state.scales[name])
         return values, found, errors
 
     def finish(self, state: PointState, groups: Groups, contact: Contact | None) -> Any:
