@@ -558,6 +558,16 @@ def test_the_slope_of_friction_within_a_bin_is_no_scatter(written):
 
 
 @pytest.mark.quick
+def test_a_slow_ramp_is_no_series_of_steps(written, subtests):
+    for rate in (0.002, 0.005, 0.01):  # of the speed from row to row
+        with subtests.test(rate=rate):
+            speed = 0.1 * (1 + rate) ** np.arange(800)
+            friction = curve(speed) * (1 + 0.01 * np.random.default_rng(2).normal(size=speed.size))
+            found = sb.bench.read(written(series_of(speed, friction)))
+            assert note_of(found, "The speed never rests") and not note_of(found, "Left out")
+            assert_holds(found)
+
+
 def test_the_scatter_of_passes_is_the_error_where_it_is_more_than_that_within_them(written):
     rng = np.random.default_rng(8)
 

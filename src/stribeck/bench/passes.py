@@ -90,7 +90,14 @@ def _steps(y: Array) -> list[tuple[int, int, bool]]:
             joined[-1] = (joined[-1][0], end, True)
         else:
             joined.append((first, end, steady[k]))
-    return joined
+    # Pieces of a slow ramp that look steady lie near each other, and joined they change as a ramp does.
+    rests = [float(y[first:end].mean()) for first, end, is_steady in joined if is_steady]
+    apart = [abs(b - a) for a, b in zip(rests[:-1], rests[1:], strict=True)]
+    nearest = iter([min(apart[max(0, k - 1) : k + 1], default=0.0) for k in range(len(rests))])
+    return [
+        (first, end, is_steady and abs(_change(y[first:end])) < max(next(nearest) / 2, LARGEST_NOISE))
+        for first, end, is_steady in joined
+    ]
 
 
 def _pieces(y: Array) -> list[tuple[int, int]]:
