@@ -557,7 +557,6 @@ def test_the_slope_of_friction_within_a_bin_is_no_scatter(written):
     assert len(found) == 6 and (found.half_width < 1e-3).all()
 
 
-@pytest.mark.quick
 def test_a_slow_ramp_is_no_series_of_steps(written, subtests):
     for rate in (0.002, 0.005, 0.01):  # of the speed from row to row
         with subtests.test(rate=rate):
@@ -568,6 +567,7 @@ def test_a_slow_ramp_is_no_series_of_steps(written, subtests):
             assert_holds(found)
 
 
+@pytest.mark.quick
 def test_the_scatter_of_passes_is_the_error_where_it_is_more_than_that_within_them(written):
     rng = np.random.default_rng(8)
 

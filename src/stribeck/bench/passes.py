@@ -93,9 +93,9 @@ def _steps(y: Array) -> list[tuple[int, int, bool]]:
     # Pieces of a slow ramp that look steady lie near each other, and joined they change as a ramp does.
     rests = [float(y[first:end].mean()) for first, end, is_steady in joined if is_steady]
     apart = [abs(b - a) for a, b in zip(rests[:-1], rests[1:], strict=True)]
-    nearest = iter([min(apart[max(0, k - 1) : k + 1], default=0.0) for k in range(len(rests))])
+    beside = iter([min(apart[max(0, k - 1) : k + 1], default=0.0) for k in range(len(rests))])
     return [
-        (first, end, is_steady and abs(_change(y[first:end])) < max(next(nearest) / 2, LARGEST_NOISE))
+        (first, end, is_steady and abs(_change(y[first:end])) < max(next(beside) / 2, LARGEST_NOISE))
         for first, end, is_steady in joined
     ]
 
@@ -196,18 +196,17 @@ def passes_of(raw: Raw, per_decade: float) -> Series:
     for part in parts:
         status[part.first : part.end] = KEPT if part.steady else AT_REST if part.direction == 0 else CHANGING
     notes: list[str] = []
-    held = int((status == KEPT).sum())
-    if held >= int((status == CHANGING).sum()):
+    if int((status == KEPT).sum()) >= int((status == CHANGING).sum()):
         found = _of_steps([part for part in parts if part.steady], raw, friction)
+        notes += _rest_and_changes(raw, status)
+        common = {strokes: common_memory([p.values for p in found if p.strokes == strokes]) for strokes in (False, True)}
+        found = [_settled(each, common[each.strokes], raw, notes) for each in found]
+        for each in found:
+            status[each.starting] = STARTING
     else:
         found, said = _of_ramps(parts, raw, speed, friction, per_decade)
-        notes.append(said)
         status[np.concatenate([each.rows for each in found])] = KEPT
-    notes += _rest_and_changes(raw, status)
-    common = {strokes: common_memory([p.values for p in found if p.strokes == strokes]) for strokes in (False, True)}
-    found = [_settled(each, common[each.strokes], raw, notes) for each in found]
-    for each in found:
-        status[each.starting] = STARTING
+        notes += [said, *_rest_and_changes(raw, status)]
     return Series(raw, friction, tuple(_with_errors(found, raw)), status, tuple(notes))
 
 
