@@ -26,7 +26,7 @@ from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.path.line_knots import COLUMNS, POSITION
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
-from stribeck.solver.solve import check_rtol, finish, minimum_estimate, solution_of, state_notes
+from stribeck.solver.solve import check_rtol, finish, solution_of, state_notes, stated_errors
 from stribeck.solver.solve_error import SolveError, describe
 
 __all__ = ["COLUMNS", "CurvePoint", "LineSource"]
@@ -49,8 +49,7 @@ class CurvePoint(Solution):
             "outcome": Outcome.CONVERGED,
             "rtol": rtol,
             "observables": Observables(**values),
-            "relative_errors": np.maximum(errors[:POSITION], minimum_estimate(rtol, groups.model))
-            / drag_parts(row[:POSITION]),
+            "relative_errors": stated_errors(errors[:POSITION], row[:POSITION], groups, rtol),
             "minimum_position_error": float(errors[POSITION]),
         }
         vars(self).update(known | {"_place": (path, s), "_coordinate": coordinate})
@@ -106,11 +105,6 @@ class LineSource(Source):
         return float(sliding_part(2 * self.coordinate.groups_at(0.0).model.film.slide))
 
     @cached_property
-    def least_error(self) -> float:
-        """Smallest error that is stated."""
-        return minimum_estimate(self.rtol, self.coordinate.groups_at(0.0).model)
-
-    @cached_property
     def _states(self) -> dict[tuple[float, float], RefinedState]:
         return {}
 
@@ -132,15 +126,14 @@ class LineSource(Source):
 
     def _readings(self, s: Array, found: Array, errors: Array, rtol: float) -> Readings:
         """Return rows of the path, shape (n, columns), and their errors, with the friction that follows from both."""
-        stated = np.maximum(errors[:, :POSITION], self.least_error)
-        relative = np.asarray(stated / drag_parts(found[:, :POSITION]))
-
+        values = found[:, :POSITION]
+        relative = stated_errors(errors[:, :POSITION], values, self.coordinate.groups_at(0.0), self.rtol)
         return Readings(
             names=ALL_NAMES,
             values=dict(zip(COLUMNS, found.T, strict=True)),
             relative_errors=relative,
             position_error=errors[:, POSITION],
-            error_estimate=float(np.nanmax(stated, initial=0.0)) if len(s) else np.nan,
+            error_estimate=float(np.nanmax(relative * drag_parts(values), initial=0.0)) if len(s) else np.nan,
             terms=partial(self._terms, s),
             made=partial(self._points, s, found, errors, rtol),
         )

@@ -19,7 +19,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import BASE_MODEL, Groups, Model
 from stribeck.contacts.notes import cavitation_notes, fluid_notes, law_notes, pocket_notes, shape_notes
 from stribeck.contacts.with_parts import with_parts
-from stribeck.equations.observables import Observables, drag_parts
+from stribeck.equations.observables import ROW, Observables, drag_parts
 from stribeck.equations.state import State
 from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.continuation import StepPath
@@ -287,11 +287,12 @@ def minimum_estimate(rtol: float, model: Model) -> float:
     return (NEGLIGIBLE if model == BASE_MODEL else SAFETY * NEGLIGIBLE) * rtol
 
 
-def stated_errors(point: RefinedState, rtol: float) -> Array:
-    """Return the stated error of each observable of a state, relative to it, absolute for the load shares."""
-    assert point.values is not None and point.estimate is not None
-    counted = np.maximum(point.estimate.relative, minimum_estimate(rtol, point.groups.model))
-    return np.asarray(counted / drag_parts(point.values.array())[: len(counted)])
+def stated_errors(counted: Array, values: Array, groups: Groups, rtol: float) -> Array:
+    """Return the stated errors of values by those that a tolerance counts: relative, absolute for the load shares."""
+    found = np.maximum(counted, minimum_estimate(rtol, groups.model))
+    if groups.roughness == 0 and groups.speed > 0:  # smooth surfaces in a film touch nowhere
+        found[..., ROW["contact_load_share"]] = 0.0
+    return np.asarray(found / drag_parts(values)[..., : found.shape[-1]])
 
 
 def solution_of(point: RefinedState, contact: Contact | None, rtol: float) -> Solution | None:
@@ -307,7 +308,7 @@ def solution_of(point: RefinedState, contact: Contact | None, rtol: float) -> So
         rtol=rtol,
         law=state.equations.law.name,
         observables=values,
-        relative_errors=stated_errors(point, rtol),
+        relative_errors=stated_errors(estimate.relative, values.array(), point.groups, rtol),
         minimum_position_error=estimate.minimum_position,
         rounding_floor=estimate.floor,
         mesh=state.mesh,

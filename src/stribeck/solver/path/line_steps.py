@@ -98,8 +98,10 @@ class LineSteps:
         inputs: Mapping[str, float],
     ) -> tuple[Array, Array, Array]:
         """Return observables with their derivatives and errors, those by all groups at once."""
-        assert state.state is not None and state.values is not None
-        known = dict(zip(ROW, zip(state.values.array(), stated_errors(state, self.rtol), strict=False), strict=False))
+        assert state.state is not None and state.values is not None and state.estimate is not None
+        values = state.values.array()
+        stated = stated_errors(state.estimate.relative, values, state.groups, self.rtol)
+        known = dict(zip(ROW, zip(values, stated, strict=False), strict=False))
         if AREA in names:
             known[AREA] = area_of_state(state.state, float(known["contact_load_share"][1]))
         values, errors = np.array([known[name] for name in names]).T
