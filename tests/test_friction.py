@@ -43,4 +43,5 @@ def test_smooth_surfaces_leave_no_error_to_the_share_of_asperities():
         assert state.errors["contact_load_share"] == state.contact_load_share == 0.0
         assert 0 < state.friction.relative_error <= 1e-6
     assert curve.friction.relative_error.max() <= 1e-6
+    assert sb.solve(contact).to_dict()["contact_load_share_error"] == 0.0
     assert sb.solve(contact.replace(speed=0)).errors["contact_load_share"] > 0

@@ -114,7 +114,7 @@ class Number:
     def stated(self) -> dict[str, tuple[float, str, str]]:
         """Value, unit and meaning of the number and of its error or interval, under the names that files have."""
         found = {self.name: (self.value, self.unit, self.meaning)}
-        if self.error != 0 and not math.isnan(self.error):
+        if (self.error != 0 or self.is_bounded) and not math.isnan(self.error):  # shares are exact in some states alone
             found[f"{self.name}_error"] = (self.error, self.unit, f"estimated absolute error of {self.name}")
         for end, value in zip(("low", "high"), self.interval or (), strict=False):
             found[f"{self.name}_{end}_95"] = (value, self.unit, f"{end} end of the 95 % interval of {self.name}")
