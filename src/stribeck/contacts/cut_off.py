@@ -168,11 +168,11 @@ def far_error(
     return (0.5 * np.abs(slide_to_roll) * far.couette + 3.0 * far.poiseuille) * speed / from_there
 
 
-def is_far(model: Model, wetted_radius: float) -> bool:
+def is_far(model: Model, wetted_radius: Any) -> Any:
     """Return whether a far film in closed form holds from where the liquid ends."""
     # No closed form holds for a thinning fluid, and none is known for thick films that rupture.
     nearest = FAR_FILM_MIN_RADIUS if model.cavitation is Cavitation.NONE else math.inf
-    return not model.film.uses_speed and wetted_radius >= nearest
+    return np.logical_and(not model.film.uses_speed, np.greater_equal(wetted_radius, nearest))
 
 
 def _minus_log_cut_off(parts: Mapping[str, Any], speed: Any, far: FarFilm) -> Any:

@@ -141,6 +141,8 @@ class BallRule(FrictionRule):
     def far_error(self, parts: Values, speed: Any, load: Any, inputs: Values) -> Any:
         """Return its error by the end of the liquid."""
         J = far_error(parts, speed, inputs["slide_to_roll"], inputs["wetted_radius"], inputs.get("far", FULL_FAR_FILM))
+        # Where no far film in closed form holds, the film itself is integrated to where the liquid ends.
+        J = np.where(is_far(inputs["model"], inputs["wetted_radius"]), J, 0.0)
         return 1.5 / math.pi * self._slope(load, inputs) * J
 
     def scale(self, parts: Values, speed: Any) -> dict[str, Any]:

@@ -279,7 +279,7 @@ class FrictionModel:
         found = self._read(theta, x, states) if is_read else self._parts(theta, x, curve, values, states)
         names = self.rule.parts(states.definition)
         parts, inputs = dict(zip(names, found.values[1:-1], strict=True)), dict(zip(self.rule.inputs, x[:, 4:].T, strict=True))
-        fixed = {"far": far_film(self.model)}
+        fixed = {"far": far_film(self.model), "model": self.model}
         # By the logarithms of the groups, by the numbers of the model, and by the logarithms of the inputs.
         known = len(found.slopes[0])
         rows = np.eye(known + len(inputs))[:, :, None]
