@@ -9,6 +9,18 @@ from command_line import call, case_text, toml_of
 
 import stribeck as sb
 
+DROP = sb.PointContact(
+    radius=0.01,
+    modulus=2e6,
+    load=0.9,
+    viscosity=0.1,
+    speed=1.0,
+    roughness=4.5e-7,
+    alpha=2,
+    beta=0.1,
+    boundary_friction=0.5,
+    wetted_radius=3e-3,
+)
 SPEEDS = TRUE.speed * np.geomspace(0.3, 6.0, 5)
 
 
@@ -205,12 +217,19 @@ def test_the_stated_error_of_friction_of_a_fluid_that_thins_covers_the_solved_on
 
 def test_a_fit_of_a_ball_in_a_drop_counts_the_friction_up_to_its_rim():
     """With the friction of a far film exact data gave 86 mPa s for 100."""
-    given = dict(radius=0.01, modulus=2e6, load=0.9, viscosity=0.1, speed=1.0, alpha=2, beta=0.1, boundary_friction=0.5)
-    drop = sb.PointContact(**given, roughness=4.5e-7, wetted_radius=3e-3)
     speeds = np.array([1.0, 1.5, 2.0])
-    data = measured(frictions(drop, speeds), speeds)
-    found = sb.fit(data, drop.replace(viscosity=0.12), free=["viscosity"], intervals=False)
+    data = measured(frictions(DROP, speeds), speeds)
+    found = sb.fit(data, DROP.replace(viscosity=0.12), free=["viscosity"], intervals=False)
     assert found.contact.viscosity == pytest.approx(0.1, rel=2e-3)
     # That of a far film in closed form, of which this friction is not, was 0.17.
     solved = frictions(found.contact, speeds)
     assert np.abs(found.friction / solved - 1).max() <= found.model_error + 1e-4 <= 1e-3
+
+
+def test_a_drop_ends_at_as_many_contact_radii_as_it_does_at_each_load():
+    """With those at the load of the case for all curves exact data gave 106 mPa s for 100."""
+    loads, speeds = (0.3, 0.9), np.array([1.0, 1.5, 2.0])
+    friction = np.concatenate([frictions(DROP.replace(load=each), speeds) for each in loads])
+    data = measured(friction, speeds, inputs=tuple({"load": each} for each in loads))
+    found = sb.fit(data, DROP.replace(viscosity=0.12), free=["viscosity"], intervals=False)
+    assert found.contact.viscosity == pytest.approx(0.1, rel=2e-3)

@@ -33,7 +33,7 @@ from stribeck.contacts.with_parts import exponents_of, models_at_both_sides, ref
 from stribeck.equations.sensitivity import Change
 from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.measurements import Measurements
-from stribeck.fits.states import Changes, FrictionParts, States, places, together
+from stribeck.fits.states import Changes, FrictionParts, Inputs, States, places, together
 from stribeck.numerics.dual import Dual
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError
@@ -84,6 +84,8 @@ class FrictionModel:
         if data.abscissa != "speed":
             for each in groups:
                 refuse_fixed_memory(each, "which a fit must know; give a column of speeds, or fit with an elastic solid.")
+        # Whether friction is that of a far film wherever the liquid of a curve ends.
+        self.is_far = all(self.rule.is_enough(each.groups.model, [self.rule.of_contact(each)]) for each in self.contacts)
         self.exponents = self._exponents_at(self.contacts)
         self.logs = self._logs_at(self.contacts, data.curve, data.values)
         # Of each curve: a faster cylinder drags the substrate along.  What is measured is a size.
@@ -98,8 +100,7 @@ class FrictionModel:
         by = tuple(name for name, is_moved in zip(GROUPS, moves, strict=True) if is_moved)
         # Whether a table holds for all contacts, wherever in its box their states lie.
         is_one = len({each.groups.model for each in self.contacts}) == 1 and self.is_constant and not any(self.moving)
-        is_far = all(self.rule.is_enough(each.groups.model, [self.rule.of_contact(each)]) for each in self.contacts)
-        in_atlas = is_one and is_far and atlas.for_groups(self.contact.groups) is not None
+        in_atlas = is_one and self.is_far and atlas.for_groups(self.contact.groups) is not None
         return States(self.contact, by, in_atlas, definition, rtol, on_state)
 
     def count_states(self, rtol: float) -> int:
@@ -135,23 +136,25 @@ class FrictionModel:
 
     def _parts(self, theta: Array, x: Array, curve: Indices, values: Array, states: States) -> FrictionParts:
         """Return the parts of the friction of all rows, those with different models on their own."""
-        groups: list[tuple[Physics, Changes, list[Indices]]] = []
+        groups: list[tuple[Physics, Changes, Inputs | None, list[Indices]]] = []
         for c in np.unique(curve).tolist():
             own, moving, remembers = np.nonzero(curve == c)[0], self.moving[c], self.remembers[c]
             for rows in own[:, None] if remembers else own[None]:
                 speed = float(values[rows[0]]) if remembers else None
                 moved = moving or remembers
-                physics = self.contact_of(c, theta, speed).groups.physics if moved else self.physics[c]
+                here = self.contact_of(c, theta, speed) if moved or not self.is_far else self.contacts[c]
+                physics = here.groups.physics if moved else self.physics[c]
+                inputs: Inputs | None = None if self.is_far else self.rule.of_contact(here)
                 changes = self._changes(c, theta, moving, speed) if moved else {}
-                same = next((each[2] for each in groups if each[:2] == (physics, changes)), None)
+                same = next((each[3] for each in groups if each[:3] == (physics, changes, inputs)), None)
                 if same is None:
-                    groups.append((physics, changes, same := []))
+                    groups.append((physics, changes, inputs, same := []))
                 same.append(rows)
         found = []
-        for physics, changes, several in groups:
+        for physics, changes, inputs, several in groups:
             rows = np.concatenate(several)
             rows_of, at = np.unique(x[rows, :3], axis=0, return_inverse=True)  # repeats of a row are one state
-            each, at = states.parts(Groups(*rows_of.T, **physics), changes), at.ravel()
+            each, at = states.parts(Groups(*rows_of.T, **physics), changes, inputs), at.ravel()
             slopes = np.zeros((len(each.values), 3 + len(self.free), len(rows)))
             slopes[:, :3] = each.slopes[:, :3, at]
             slopes[:, [3 + k for k in changes]] = each.slopes[:, 3:, at]

@@ -29,6 +29,9 @@ from stribeck.solver.neighbours import Neighbours, Observed
 Changes = Mapping[int, Change]
 """What free inputs, by their numbers, change of the model, in Hertz units."""
 
+Inputs = Mapping[str, float]
+"""What friction takes beside the groups: where the liquid ends among it."""
+
 FAR_DOUBT = 1e-2  # Doubt up to which curves are read between solved ones, see :mod:`stribeck.numerics.scattered`
 
 SAFETY = 8.0  # Largest fourth derivative of a part of the friction by ln(speed), over its size (test_point_fit)
@@ -72,8 +75,11 @@ class States:
         return found
 
     @one_blas_thread
-    def parts(self, groups: Groups, changes: Changes) -> FrictionParts:
-        """Return the parts of states in a row, with derivatives along changes of the model, off the atlas or solved."""
+    def parts(self, groups: Groups, changes: Changes, inputs: Inputs | None = None) -> FrictionParts:
+        """Return the parts of states in a row, with derivatives along changes of the model, off the atlas or solved.
+
+        ``inputs`` are those of the friction, by default of the contact.
+        """
         if self.uses_atlas and not self.must_solve:
             try:
                 parts = atlas.friction_parts(groups, self.definition)
@@ -90,15 +96,16 @@ class States:
             speed = places(rows[here, 0], self.rtol)
             is_read = len(speed) < len(here)
             by = ("speed", *self.by) if is_read else self.by
-            states = [self._solved(Groups(each, load, roughness, **groups.physics), by, changes) for each in speed.tolist()]
+            rows_of = (Groups(each, load, roughness, **groups.physics) for each in speed.tolist())
+            states = [self._solved(each, by, changes, inputs) for each in rows_of]
             columns = Observed(*(np.stack(column, axis=-1) for column in zip(*states, strict=True)))
             columns = _between_speeds(speed, columns, rows[here, 0], self.rtol) if is_read else columns
             found.append((here, FrictionParts(*columns)))
         return together(found)
 
-    def _solved(self, groups: Groups, by: Sequence[str], changes: Changes) -> Observed:
-        rule = RULES[groups.geometry]
-        observable, inputs = self.contact.friction_of_asperities.observable, rule.of_contact(self.contact)
+    def _solved(self, groups: Groups, by: Sequence[str], changes: Changes, inputs: Inputs | None) -> Observed:
+        rule, observable = RULES[groups.geometry], self.contact.friction_of_asperities.observable
+        inputs = rule.of_contact(self.contact) if inputs is None else inputs
         names = (observable, *rule.parts(self.definition), "contact_load_share")
         found = self.neighbours.observed(groups, names, list(changes.values()), by=by, inputs=inputs)
         self.on_state()
