@@ -204,6 +204,12 @@ def test_the_footer_holds_inputs_law_tolerance_and_version(curve):
     assert "$U$ =" not in found  # it varies
 
 
+def test_the_footer_gives_numbers_of_a_contact_law_with_their_units():
+    law = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=2e-6, hurst=0.8, q0=1e4, roll_off=3e4, q1=1e8))
+    solved = sb.solve(sb.load_case(PDMS).contact.replace(law=law, roughness=2e-6), rtol=1e-3)
+    assert "(alpha 1.915, beta 0.04689, rms height 2 µm, rms slope 0.4564, gamma 0.45)" in words(picture(solved))
+
+
 def test_where_the_law_is_beyond_its_range_the_picture_says_so(curve, heavy):
     hatched = [patch.get_label() for patch in picture(heavy).axes[0].collections]
     assert "contact law outside its range" in hatched

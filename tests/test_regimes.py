@@ -140,6 +140,9 @@ def test_at_rest_and_between_smooth_surfaces_margins_begin_where_a_regime_does()
     assert shares(CONTACT.replace(speed=speed.more.value))[1] == pytest.approx(0.05, abs=1e-7)
     assert all(margin.less is margin.more is None for margin in others)
     assert any("At zero speed" in note for note in rest.notes)
+    assert repr(rest).splitlines()[0] == "RegimeMargins: boundary lubrication"
+    assert repr(rest).splitlines()[1].startswith("To reach mixed lubrication: speed from zero to 3")
+    assert "<p>To reach mixed lubrication" in rest._repr_html_()
     speed, load, roughness, _ = smooth.margins
     assert smooth.regime == "hydrodynamic"
     assert speed.less is speed.more is load.less is load.more is None

@@ -65,7 +65,7 @@ def _constant(result: BaseSolution | StribeckCurve) -> Iterator[str]:
     constant = (f"{name} {value:.6g}" for name, value in constant_groups(groups).items())
     yield f"Groups: {', '.join(constant)}."
     if groups.law is not None:
-        numbers = in_words(groups.law.parameters)
+        numbers = in_words(groups.law.parameters, si=True)
         yield f"Contact law: {groups.law.name}{f' ({numbers})' if numbers else ''}."
     model = model_words(groups, contact)
     if model:

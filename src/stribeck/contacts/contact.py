@@ -585,11 +585,14 @@ def model_words(groups: Groups, contact: Contact | None) -> str:
     return in_words(found, contact is not None) + (" (Hertz units)" if found and contact is None else "")
 
 
+NUMBERS_IN_WORDS = LAW_NUMBERS | {"rms_height": numbers_of(Contact)["roughness"]}
+
+
 def in_words(parameters: Mapping[str, float | str], si: bool = False) -> str:
     """Return names and values in words, in SI units with these."""
     said = []
     for name, value in parameters.items():
-        row = LAW_NUMBERS.get(re.sub("^(first|second)_", "", name))
+        row = NUMBERS_IN_WORDS.get(re.sub("^(first|second)_", "", name))
         kind = row.dimension if si and row is not None else None
         text = value if isinstance(value, str) else format_si(value, kind) if kind else f"{value:.4g}"
         said.append(f"{name.replace('_', ' ')} {text}")

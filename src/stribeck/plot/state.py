@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.contact import input_texts
+from stribeck.contacts.contact import in_words, input_texts
 from stribeck.contacts.geometries import LINE
 from stribeck.plot import style
 from stribeck.plot.style import (
@@ -172,10 +172,7 @@ def law_text(solution: BaseSolution) -> str:
     """Return name and parameters of the contact law."""
     if solution.law in ("dry contact", "smooth"):
         return solution.law
-    numbers = ", ".join(
-        f"{name.replace('_', ' ')} {value if isinstance(value, str) else f'{value:.4g}'}"
-        for name, value in solution.law_parameters.items()
-    )
+    numbers = in_words(solution.law_parameters, si=True)
     return f"{solution.law} contact law" + (f" ({numbers})" if numbers else "")
 
 

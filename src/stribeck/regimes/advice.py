@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Any
 
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, Friction, regime_of
@@ -17,9 +17,6 @@ from stribeck.quantities.units import InputError
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.solve import solve
 from stribeck.solver.solve_error import SolveError
-
-if TYPE_CHECKING:
-    from stribeck.regimes.margins import Crossing, Margin, RegimeMargins
 
 
 def regime_sentence(solution: BaseSolution, friction: Friction) -> str:
@@ -41,7 +38,7 @@ def answer_sentence(solution: BaseSolution, friction: Friction) -> str:
     return f"{regime_sentence(solution, friction)}{said}"
 
 
-def ways_to(margins: RegimeMargins) -> Iterator[str]:
+def ways_to(margins: Any) -> Iterator[str]:
     """Yield a sentence for each regime that is near: what it takes of each input, and what leads nowhere."""
     table = INPUT_TABLES[margins.geometry]
     for regime in margins.targets:
@@ -58,7 +55,7 @@ def ways_to(margins: RegimeMargins) -> Iterator[str]:
         yield "Only the product of speed and viscosity matters, so their factors are equal."
 
 
-def step_text(mark: Crossing, dimension: str, digits: int = 4) -> str:
+def step_text(mark: Any, dimension: str, digits: int = 4) -> str:
     """Return how far an input is to be changed, as ``x 3.1 (to 0.31 m/s)``."""
     if mark.value == 0:
         return "to any value above zero"
@@ -72,10 +69,10 @@ def step_text(mark: Crossing, dimension: str, digits: int = 4) -> str:
     return f"{'x' if larger else '/'} {format_factor(mark.factor if larger else 1 / mark.factor)} (to {value}{interval})"
 
 
-def _searched(margin: Margin, table: InputTable) -> str:
+def _searched(margin: Any, table: InputTable) -> str:
     low, high = margin.searched
     if low == high:  # it cannot lead anywhere, and a note says why
-        return margin.name
+        return str(margin.name)
     ends = (format_si(value, table.quantities[margin.name].dimension) for value in (low, high))
     return f"{margin.name} (range searched {' to '.join(ends)})"
 

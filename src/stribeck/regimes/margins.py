@@ -37,7 +37,9 @@ from stribeck.numerics.events import Event
 from stribeck.numerics.settings import EPSILON
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.results import Card, Told
 from stribeck.quantities.units import InputError, show
+from stribeck.regimes.advice import ways_to
 from stribeck.solver.base_solution import regime_of_state
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import check_rtol, solve
@@ -323,8 +325,8 @@ NEIGHBOURS: dict[Regime, tuple[Regime, ...]] = {
 }
 
 
-@dataclass(frozen=True)
-class RegimeMargins(Tabled):
+@dataclass(frozen=True, repr=False)
+class RegimeMargins(Told, Tabled):
     """A contact's regime and the way to its neighbours; its dataset has the changes of regime along ``crossing``."""
 
     regime: Regime  # The present one
@@ -337,6 +339,9 @@ class RegimeMargins(Tabled):
         """Return the margins by input, ready for JSON."""
         table = INPUT_TABLES[self.geometry]
         return {margin.name: asdict(margin) | {"unit": table.quantities[margin.name].unit} for margin in self.margins}
+
+    def _card(self) -> Card:
+        return Card(f"{self.regime} lubrication", notes=self.notes, sentences=[*ways_to(self)])
 
     def _labelled(self) -> Labelled:
         table = INPUT_TABLES[self.geometry]
