@@ -30,9 +30,9 @@ import numpy as np
 import stribeck as sb
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.equations.point.mesh_choice import Resolution, bytes_of
-from stribeck.equations.point.observables import observables
+from stribeck.equations.point.observables import MINIMA, observables
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.solver.point.estimate import WITHOUT_TOLERANCE, Pair
+from stribeck.solver.point.estimate import Pair
 from stribeck.solver.point.level import solve_level
 from stribeck.solver.point.solve import _dry_level, solve_cold
 from stribeck.solver.point.state import PointState
@@ -114,7 +114,7 @@ def judged(seed: int, number: int, rtol: float, largest: float = math.inf) -> di
         row["needs"] = row["needs"] if row["needs"] > largest else math.inf
     else:
         ratios = {name: abs(state.values[name] - exact[name]) / error for name, error in state.absolute_errors.items()}
-        kept = {name: ratio for name, ratio in ratios.items() if name not in WITHOUT_TOLERANCE}
+        kept = {name: ratio for name, ratio in ratios.items() if name not in MINIMA}
         row["worst"] = max(kept, key=kept.__getitem__)
         row["ratio"] = kept[row["worst"]]
         row["error"] = max(abs(state.values[name] - exact[name]) / state.scales[name] for name in kept)

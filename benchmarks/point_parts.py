@@ -34,11 +34,11 @@ from point_box import FINER_DEGREE, FINER_MODES, SHIFTED
 import stribeck as sb
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.point.mesh_choice import Resolution
-from stribeck.equations.point.observables import observables
+from stribeck.equations.point.observables import MINIMA, observables
 from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.settings import MAX_REFINEMENTS
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.solver.point.estimate import WITHOUT_TOLERANCE, Pair
+from stribeck.solver.point.estimate import Pair
 from stribeck.solver.point.level import solve_level
 from stribeck.solver.point.solve import solve_cold
 from stribeck.solver.point.state import PointState
@@ -160,7 +160,7 @@ def judged(family: str, number: int, seed: int, rtol: float, largest: float = ma
 
 def worst(row: dict[str, Any], minima: bool = False) -> tuple[float, str]:
     """Return the largest true over stated error and the name of the observable, minima of the gap apart."""
-    return max((ratio, name) for name, ratio in row["ratios"].items() if (name in WITHOUT_TOLERANCE) == minima)
+    return max((ratio, name) for name, ratio in row["ratios"].items() if (name in MINIMA) == minima)
 
 
 def table(rows: list[dict[str, Any]]) -> str:
