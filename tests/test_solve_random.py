@@ -71,6 +71,13 @@ def corners():
                     yield sb.Groups(speed, load, kappa * load)
 
 
+def largest_ratio(solution, errors):
+    """Return the largest true over stated error; what is stated to be exact, as no asperities touch, is."""
+    stated = np.array(list(solution.errors.values())[: len(errors)])
+    assert not errors[stated == 0].any()
+    return np.nanmax(errors[stated > 0] / stated[stated > 0])
+
+
 def check(states, true_errors, rtol=1e-6):
     """Solve cold; return true over estimated errors, largest and single, and how many rounding bounds."""
     ratios, singles, bounded = [], [], 0
@@ -82,7 +89,7 @@ def check(states, true_errors, rtol=1e-6):
         assert s.error_estimate <= rtol
         errors = true_errors(s)
         ratios.append(np.nanmax(errors) / s.error_estimate)
-        singles.append(np.nanmax(errors / list(s.errors.values())[: len(errors)]))
+        singles.append(largest_ratio(s, errors))
         noted = any(note.startswith("Rounding in double precision limits") for note in s.notes)
         assert noted == (s.rounding_floor > 0.1 * rtol)
         bounded += noted
@@ -168,7 +175,7 @@ def test_the_stated_errors_of_typical_states_cover_the_true_ones(solved, true_er
             assert s.error_estimate <= rtol
             assert error.max() <= rtol
             ratios[name, rtol] = error.max() / s.error_estimate
-            singles[name, rtol] = (error / list(s.errors.values())[: len(error)]).max()
+            singles[name, rtol] = largest_ratio(s, error)
     assert np.mean([ratio <= 1 for ratio in ratios.values()]) >= 0.85, ratios
     assert max(ratios.values()) < 10, ratios
     assert max(singles.values()) < 30, singles
