@@ -2,16 +2,13 @@
 
 import json
 import math
-from types import SimpleNamespace
 
-import numpy as np
 import pytest
 from command_line import EXAMPLES, call, case_text
 from fit_data import TRUE
 
 import stribeck as sb
 from stribeck.regimes.margins import RegimeMargins
-from stribeck.uncertainty import propagate as propagate_module
 
 SHEET = {
     "modulus": None,
@@ -519,19 +516,6 @@ def test_the_interval_is_the_one_that_solved_samples_confirmed():
     found = sb.propagate(seal, {"beta": 0.29, "modulus": 0.33}, transitions=False)
     assert not found.notes
     assert found["contact_load_share"].interval_95[0] == pytest.approx(0.76, abs=0.06)  # of 330 samples, each solved
-
-
-def test_a_picture_has_no_band_where_the_interval_is_not_settled(monkeypatch):
-    unsettled = {"friction": SimpleNamespace(value=1.0, interval_95=(0.1, 2.0))}
-    states = iter([(), ("not settled",), (), *[()] * 10])
-
-    def propagated(*_, **__):
-        return type("State", (dict,), {"notes": next(states)})(unsettled)
-
-    monkeypatch.setattr(propagate_module, "propagate", propagated)
-    band = propagate_module.friction_band(TRUE, {"load": 0.1}, (1e-3, 1.0))
-    low, high = band.along(band.values, np.ones(13))
-    assert np.isnan(low[1]) and np.isnan(high[1]) and np.delete(low, 1) == pytest.approx(0.1)
 
 
 @pytest.mark.usefixtures("no_margins")

@@ -21,6 +21,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from command_line import EXAMPLES, case_text
+from fit_data import TRUE
 
 import stribeck as sb
 from stribeck.cases.law import SOURCES
@@ -52,6 +53,7 @@ from stribeck.quantities import units
 from stribeck.regimes.margins import regime_margins
 from stribeck.solids import Prony
 from stribeck.solver.numbers import report_rows
+from stribeck.uncertainty import propagate as propagate_module
 
 START = server.example()
 BALL = choices.choose(START, "geometry", "point")
@@ -1317,3 +1319,16 @@ def test_the_numbers_have_the_intervals_of_the_command_and_the_curve_has_their_b
     assert (band.low < 1).all() and (band.high > 1).all()
     kinds = [each["type"] for each in charts.friction_chart(answer)["series"]]
     assert kinds[:2] == ["bands", "area"]  # what comes first is painted first, and the colours of regimes cover what is there
+
+
+def test_a_picture_has_no_band_where_the_interval_is_not_settled(monkeypatch):
+    unsettled = {"friction": SimpleNamespace(value=1.0, interval_95=(0.1, 2.0))}
+    states = iter([(), ("not settled",), (), *[()] * 10])
+
+    def propagated(*_, **__):
+        return type("State", (dict,), {"notes": next(states)})(unsettled)
+
+    monkeypatch.setattr(propagate_module, "propagate", propagated)
+    band = propagate_module.friction_band(TRUE, {"load": 0.1}, (1e-3, 1.0))
+    low, high = band.along(band.values, np.ones(13))
+    assert np.isnan(low[1]) and np.isnan(high[1]) and np.delete(low, 1) == pytest.approx(0.1)

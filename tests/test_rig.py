@@ -6,7 +6,6 @@ The layouts are made from public descriptions of ball-on-disc (mini traction mac
 import functools
 import math
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +14,6 @@ from command_line import call, case_text, fit_settings
 from fit_data import exact
 
 import stribeck as sb
-from stribeck.cases.fit_settings import settings_of
 
 SPEEDS = (0.001, 0.01, 0.1, 1.0)
 FRICTIONS = (0.5, 0.25, 0.0625, 0.125)
@@ -95,13 +93,10 @@ def test_a_speed_that_may_be_mean_or_sum_is_asked_for(read):
 
 @pytest.mark.quick
 def test_a_case_whose_surfaces_both_move_is_asked_which_speed_its_file_holds(tmp_path):
-    contact = sb.load_case(Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").contact
-
     def read(header, columns=None, ratio=0.5):
         path = tmp_path / "rig.csv"
         path.write_text("\n".join([f"{header};COF", *(f"{u};{mu}" for u, mu in zip(SPEEDS, FRICTIONS, strict=True))]))
-        settings = settings_of(contact.replace(slide_to_roll=ratio))
-        return sb.read_measurements(path, replace(settings, columns=columns or {})).values
+        return sb.read_measurements(path, sb.FitSettings(slide_to_roll=ratio, columns=columns or {})).values
 
     assert read("speed [m/s]", ratio=2.0) == pytest.approx(SPEEDS)
     for header in ("speed [m/s]", "Hersey number", "eta U [Pa*s*m/s]"):
