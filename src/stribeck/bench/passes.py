@@ -78,26 +78,30 @@ def _steps(y: Array) -> list[tuple[int, int, bool]]:
     pieces = _pieces(y)
     means = [float(y[first:end].mean()) for first, end in pieces]
     changes = [abs(_change(y[first:end])) for first, end in pieces]
-    apart = [abs(b - a) for a, b in zip(means[:-1], means[1:], strict=True)]
-    steady = []
-    for k, (first, end) in enumerate(pieces):
-        nearest = min([*apart[max(0, k - 1) : k + 1]], default=np.inf)
-        # On a ramp a piece changes by as much as it lies from the next; within a step it hardly changes.
-        steady.append(end - first >= FEWEST and changes[k] < max(nearest / 2, SAME_SPEED))
+    # On a ramp a piece changes by as much as it lies from the next; within a step it hardly changes.
+    steady = [
+        end - first >= FEWEST and change < max(nearest / 2, SAME_SPEED)
+        for (first, end), change, nearest in zip(pieces, changes, _to_nearest(means, np.inf), strict=True)
+    ]
     joined: list[tuple[int, int, bool]] = []
     for k, (first, end) in enumerate(pieces):
-        if joined and steady[k] and joined[-1][2] and apart[k - 1] < LARGEST_NOISE:
+        if joined and steady[k] and joined[-1][2] and abs(means[k] - means[k - 1]) < LARGEST_NOISE:
             joined[-1] = (joined[-1][0], end, True)
         else:
             joined.append((first, end, steady[k]))
     # Pieces of a slow ramp that look steady lie near each other, and joined they change as a ramp does.
     rests = [float(y[first:end].mean()) for first, end, is_steady in joined if is_steady]
-    apart = [abs(b - a) for a, b in zip(rests[:-1], rests[1:], strict=True)]
-    beside = iter([min(apart[max(0, k - 1) : k + 1], default=0.0) for k in range(len(rests))])
+    beside = iter(_to_nearest(rests, 0.0))
     return [
         (first, end, is_steady and abs(_change(y[first:end])) < max(next(beside) / 2, LARGEST_NOISE))
         for first, end, is_steady in joined
     ]
+
+
+def _to_nearest(places: Sequence[float], alone: float) -> list[float]:
+    """Return the distance of each place from the nearer of its neighbours in the list."""
+    apart = np.abs(np.diff(places)).tolist()
+    return [min(apart[max(0, k - 1) : k + 1], default=alone) for k in range(len(places))]
 
 
 def _pieces(y: Array) -> list[tuple[int, int]]:
