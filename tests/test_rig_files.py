@@ -638,6 +638,18 @@ def test_marks_that_may_be_of_thousands_are_noted_wherever_a_column_goes(subtest
                 assert all(f"'{column}': '1.000' was read as 1, not as 1000." in notes for column in columns)
 
 
+def test_forces_with_three_digits_behind_a_decimal_comma_are_read(subtests, written):
+    """Friction and speed that are made of columns have points, which say nothing of the signs in the file."""
+    header = "Mittlere Geschwindigkeit [mm/s];Reibkraft [N];Normalkraft [N]"
+    rows = table(header, speed, lambda u, mu: 2 * mu, lambda u, mu: 2).replace(".", ",").replace(";2\n", ";2,000\n")
+    settings = fit_settings({"columns": {"entrainment_speed": "Mittlere Geschwindigkeit [mm/s]"}}, "point")
+    for reader in (sb.read_measurements, sb.bench.read):
+        with subtests.test(reader=reader.__name__):
+            found = reader(written(rows), settings)
+            speeds = 500 * (found.values if reader is sb.read_measurements else found.speed)
+            assert found.friction == pytest.approx(curve(speeds), rel=2e-3)
+
+
 def test_a_line_above_the_header_says_an_input_in_any_usual_form(subtests, written):
     rows = table("speed [mm/s];COF", speed, friction)
     for line in ("Viscosity:;50 mPa*s", '"Viscosity";"50 mPa*s"', "Viscosity [mPa*s]:;50", "viscosity = 0,05 Pa*s"):

@@ -43,6 +43,7 @@ class TextTable:
     between: tuple[tuple[int, str], ...] = ()  # Number and text of each line of text and comment below the header
     unread: tuple[int, ...] = ()  # Rows without numbers of its columns between or below its own, and headers of other tables
     notes: tuple[str, ...] = ()  # Notes on rows and columns that were left out or put together, one sentence each
+    made: tuple[str, ...] = ()  # Headers of columns that are not in the file, with a decimal point whatever the file has
 
     def unit(self, name: str) -> str:
         """Return the unit of a column: that in its header, or in the row of units."""
@@ -78,8 +79,11 @@ class TextTable:
 
     def _decimal(self, name: str) -> str:
         """Return the decimal sign of a column; refuse one that marks thousands, as the signs of other columns tell."""
+        if name in self.made:
+            return "."
         if thousands_in(self.column(name)):
-            others = [each for each in self.header if each and each != name and not thousands_in(self.column(each))]
+            of_file = [each for each in self.header if each and each != name and each not in self.made]
+            others = [each for each in of_file if not thousands_in(self.column(each))]
             numeric = [each for each in others if all(is_missing(cell) or has_number(cell) for cell in self.column(each))]
             self.decimal_comma([name, *numeric])
         return "," if self.decimal_comma([name]) else "."
@@ -139,7 +143,7 @@ class TextTable:
         """Return the table with one more column."""
         rows = tuple((*row, cell) for row, cell in zip(self.rows, cells, strict=True))
         units = (*self.units_row, "") if self.units_row else ()
-        return replace(self, header=(*self.header, name), rows=rows, units_row=units)
+        return replace(self, header=(*self.header, name), rows=rows, units_row=units, made=(*self.made, name))
 
     def of_rows(self, kept: Flags) -> Self:
         """Return the table of some of its rows."""
