@@ -21,7 +21,7 @@ from stribeck.contact_laws.law import AsperityLaw, ContactLaw, is_exponential
 from stribeck.contact_laws.scaled import ScaledLaw, law_of
 from stribeck.fluids.fluid import Cavitation, Film
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.profiles.profile import Parabola, Undeformed
+from stribeck.profiles.profile import Undeformed
 from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError, checked_word, real_array, show
 from stribeck.solids.half_plane import HalfPlane, as_solid
@@ -36,7 +36,7 @@ class Model:
     cavitation: Cavitation = Cavitation.NONE  # How the film ends behind the contact
     solid: Solid = HalfPlane()  # The soft body, in Hertz units
     cavity_pressure: float = 0.0  # Rupture pressure of a film that reforms, above the ambient one, at most zero [p_Hz]
-    profile: Undeformed = Parabola()  # The undeformed gap, in Hertz units
+    profile: Undeformed = Undeformed()  # The undeformed gap, in Hertz units
 
     def __post_init__(self) -> None:
         """Refuse films and cavitation of other types, and bodies that contradict themselves."""

@@ -14,7 +14,7 @@ from stribeck.contacts.groups import BASE_MODEL, Model
 from stribeck.fluids.description import Fluid, as_flow_factors, as_fluid
 from stribeck.fluids.fluid import Cavitation
 from stribeck.fluids.laws import DensityLaw, FilmUnits, FlowFactors, RateLaw, ViscosityLaw
-from stribeck.profiles.profile import Parabola, Profile, Undeformed, as_profile, undeformed
+from stribeck.profiles.profile import Profile, Undeformed, as_profile, undeformed
 from stribeck.profiles.shapes import Shape
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.registry import laws_of
@@ -129,7 +129,7 @@ class Parts:
         film = self.fluid.at(units, self.slide, self.flow_factors)
         of_substrate = 1.0 if speed is None else 0.5 * (1 + self.slide) * speed
         solid: Solid = HalfPlane() if self.solid is None else self.solid.scaled(length, of_substrate)
-        profile: Undeformed = Parabola() if self.profile is None else undeformed(self.profile, origin, length, units.gap)
+        profile: Undeformed = Undeformed() if self.profile is None else undeformed(self.profile, origin, length, units.gap)
         return Model(film, self.cavitation, solid, self.cavity_pressure / units.pressure, profile)
 
 

@@ -57,36 +57,30 @@ class Profile(Protocol):
         return object.__hash__(self)
 
 
-class Undeformed(Protocol):
-    """The undeformed gap in Hertz units."""
+@dataclass(frozen=True)
+class Undeformed:
+    """The undeformed gap in Hertz units: of a cylinder the parabola itself, from which those of other shapes depart."""
 
-    @property
-    def name(self) -> str:
-        """Name that outputs print."""
-
-    @property
-    def parameters(self) -> Mapping[str, float | str]:
-        """What distinguishes it from others of its name, for outputs."""
-
-    @property
-    def places(self) -> Array:
-        """Where panels of a mesh must end [a]."""
-
-    @property
-    def is_parabola(self) -> bool:
-        """Whether it is that of a cylinder."""
+    name: ClassVar[str] = "cylinder"
+    parameters: ClassVar[Mapping[str, float | str]] = {}
+    places: ClassVar[Array] = np.empty(0)  # Where panels of a mesh must end [a]
+    is_parabola: ClassVar[bool] = True
 
     def part(self, part: float) -> Undeformed:
         """Return the gap at a place of the path from the parabola, 0, to this one, 1."""
+        return self
 
     def departure(self, mesh: Mesh, exit: Any) -> Any:
         """Return the gap beyond the parabola [u_Hz] at the nodes of a mesh, whose zero is the exit where there is one."""
+        return 0.0
 
     def missed(self, coarse: Mesh, mesh: Mesh, exit: Any) -> Any:
         """Return the departure at the nodes of a finer mesh on the same panels, less the polynomials of the coarse one."""
+        return 0.0
 
     def moment(self, mesh: Mesh, exit: Any, pressure: Any) -> Any:
         """Return the integral of the departure's slope times nodal pressure over the panels in x."""
+        return 0.0
 
 
 def undeformed(shape: Profile, origin: float, length: float, height: float) -> Undeformed:
@@ -97,33 +91,7 @@ def undeformed(shape: Profile, origin: float, length: float, height: float) -> U
 
 
 @dataclass(frozen=True)
-class Parabola:
-    """The cylinder, from whose gap nothing departs."""
-
-    name: str = "cylinder"
-    parameters: ClassVar[Mapping[str, float | str]] = {}
-    places: ClassVar[Array] = np.empty(0)
-    is_parabola: ClassVar[bool] = True
-
-    def part(self, part: float) -> Parabola:
-        """Return the parabola itself."""
-        return self
-
-    def departure(self, mesh: Mesh, exit: Any) -> Any:
-        """Return zero."""
-        return 0.0
-
-    def missed(self, coarse: Mesh, mesh: Mesh, exit: Any) -> Any:
-        """Return zero."""
-        return 0.0
-
-    def moment(self, mesh: Mesh, exit: Any, pressure: Any) -> Any:
-        """Return zero."""
-        return 0.0
-
-
-@dataclass(frozen=True)
-class Departure:
+class Departure(Undeformed):
     """A shape in Hertz units."""
 
     shape: Profile
@@ -132,20 +100,17 @@ class Departure:
     height: float = 1.0  # u_0 [m]
     of_shape: float = 1.0  # Its part along the path from the parabola
 
+    is_parabola: ClassVar[bool] = False
+
     @property
-    def name(self) -> str:
+    def name(self) -> str:  # type: ignore[override]
         """The name of the shape."""
         return str(getattr(self.shape, "name", type(self.shape).__name__))
 
     @property
-    def parameters(self) -> Mapping[str, float | str]:
+    def parameters(self) -> Mapping[str, float | str]:  # type: ignore[override]
         """Those of the shape."""
         return self.shape.parameters
-
-    @property
-    def is_parabola(self) -> bool:
-        """It is not."""
-        return False
 
     @property
     def direction(self) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.settings import ROUNDING
-from stribeck.profiles.profile import Departure, Parabola, Profile, Undeformed, as_profile
+from stribeck.profiles.profile import Departure, Profile, Undeformed, as_profile
 from stribeck.quantities.schema import Input, law, numbers_of
 from stribeck.quantities.units import InputError
 
@@ -83,7 +83,7 @@ class Cylinder(Shape):
     def undeformed(self, origin: float, length: float, height: float) -> Undeformed:
         """Return the gap in Hertz units."""
         curvature = length * (length / height) / self.radius
-        return Parabola() if abs(curvature - 1) <= ROUNDING else Departure(self, origin, length, height)
+        return Undeformed() if abs(curvature - 1) <= ROUNDING else Departure(self, origin, length, height)
 
 
 @law
