@@ -423,6 +423,13 @@ def test_the_table_bench_has_what_the_command_takes_as_options(written, tmp_path
     assert found.curves == ("x",) and np.all(found.viscosity == sb.fluids.iso_vg(46, temperature=40).viscosity)
 
 
+def test_an_arm_without_a_unit_is_shown_with_the_one_it_was_read_in(written, capsys):
+    rows = stepped(np.random.default_rng(3), 40, speeds=SPEEDS[::2], amplitude=0.005)
+    path = written(text_of(rows, "Time [s];Speed [mm/s];Fz [N];Torque [mN m]"))
+    assert "arm 20 m of the case" in call(capsys, "bench", path, "--arm", "20").out
+    assert "arm 20 mm of the case" in str(sb.bench.read(path, arm=0.02))
+
+
 def test_a_wrong_entry_of_the_table_bench_is_refused_with_its_place(written, subtests):
     for text, words in (
         ('arm = "20 N"', "[bench] arm = '20 N' is a force"),

@@ -99,7 +99,8 @@ class BenchCurve(Exported, Told, ByValue):
                 )
             )
         right = range(1, 6) if names else range(5)
-        return Card(self._headline(), table=table, right=tuple(right), notes=self.notes)
+        read = [f"Read: {each}." for each in dict.fromkeys(self.taken)]
+        return Card(self._headline(), table=table, right=tuple(right), notes=self.notes, sentences=read)
 
     def _headline(self) -> str:
         kept = format_percent(float(np.mean(self.status == 0))) if len(self.status) else "all"

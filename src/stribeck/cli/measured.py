@@ -267,9 +267,10 @@ def bench_command(
 
         card = found._card()
         notes = card.notes if verbose or len(card.notes) <= SHORT_NOTES else card.notes[-SHORT_NOTES:]
-        more = [] if len(notes) == len(card.notes) else [f"-v shows {len(card.notes) - len(notes)} more notes."]
-        taken = [f"Read: {each}." for each in dict.fromkeys(found.taken)] if verbose else []
-        return [card.headline, *table_lines(card.table, card.right), *(f"Note: {note}" for note in notes), *more, *taken]
+        read = card.sentences if verbose else card.sentences[:1]
+        hidden = len(card.notes) - len(notes) + len(card.sentences) - len(read)
+        more = [f"-v shows {hidden} more note{'s' * (hidden > 1)}."] if hidden else []
+        return [card.headline, *table_lines(card.table, card.right), *read, *(f"Note: {note}" for note in notes), *more]
 
     curve = {} if out is None else {out: partial(found.to_csv, out, force=outputs.force)}
     return outputs.finish(found, lines, others=curve)

@@ -19,6 +19,7 @@ from stribeck.files.columns import has_dimension, refuse_two_values, si_factor, 
 from stribeck.files.text_table import TextTable
 from stribeck.fits.repeats import FEWEST
 from stribeck.fits.values import MADE_FRICTION, dimension_of, is_set, named_in_case, numbers, undeclared, unit_in
+from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError, listed, show
 
 UNITLESS = ("slide_to_roll", "run")  # Those without a unit, but for per cent
@@ -124,7 +125,7 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
     idle = [
         f"{key} of [fit] is not used: no {noun} was needed."
         for key, noun, value in (("track_radius", "rotation", settings.track_radius), ("arm", "torque", settings.arm))
-        if value is not None and f"{1e3 * value:g} mm of the case" not in told
+        if value is not None and f"{format_si(value, 'length', 4)} of the case" not in told
     ]
     marked = source.thousands_noted([name for name in source.written if show(name) in told])
     table = replace(table, notes=(*table.notes, *idle, *marked))
@@ -318,7 +319,7 @@ def _length(table: TextTable, pattern: str, given: float | None) -> tuple[Array,
     """
 
     def of_all(length: float, origin: str) -> tuple[Array, str]:
-        return np.full(len(table.rows), length), f"{1e3 * length:g} mm {origin}"
+        return np.full(len(table.rows), length), f"{format_si(length, 'length', 4)} {origin}"
 
     if given is not None:
         return of_all(given, "of the case")
