@@ -70,7 +70,6 @@ class Overview:
             "margins": self.margins.to_dict(),
             "sensitivities": self.sensitivities,
             "moves_friction_most": strongest_lever(self.sensitivities),
-            "error_estimate": self.error_estimate,
             "outcome": self.curve.outcome.name,
             "message": self.curve.outcome.value,
             "notes": self.notes,
