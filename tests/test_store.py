@@ -167,6 +167,15 @@ def test_csv_stays_readable_whatever_the_title(subtests, dataset, tmp_path):
             assert rows[0][0] == "speed [m/s]"
 
 
+def test_names_with_the_mark_of_a_comment_keep_their_numbers(tmp_path):
+    (tmp_path / "rig.csv").write_text('curve;speed [mm/s];COF\n"run #3";1;0.5\n"#4, wet";2;0.25\n')
+    sb.read_measurements(tmp_path / "rig.csv").to_csv(tmp_path / "curves.csv")
+    table = pd.read_csv(tmp_path / "curves.csv", comment="#")
+    assert table["curve [1]"].tolist() == ["run #3", "#4, wet"]
+    assert (table["speed [m/s]"].tolist(), table["friction [1]"].tolist()) == ([0.001, 0.002], [0.5, 0.25])
+    assert sb.read_measurements(tmp_path / "curves.csv").curves == ("run #3", "#4, wet")
+
+
 def test_the_ending_chooses_the_format_and_the_methods_of_a_curve_write_the_same(curve, tmp_path):
     dataset = curve.to_dataset()
     write_data(dataset, tmp_path / "a.NC")

@@ -97,7 +97,9 @@ def write_columns(path: PathLike, above: Iterable[str], columns: Mapping[str, Se
         temporary.open("w", newline="", encoding="utf-8") as file,
     ):
         file.writelines(f"# {line}\n" for line in above)
-        writer = csv.writer(file, lineterminator="\n")
+        marked = any("#" in cell for column in columns.values() for cell in column if isinstance(cell, str))
+        # Outside quotes readers of comments, pandas among them, leave out what follows such a mark in a name.
+        writer = csv.writer(file, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC if marked else csv.QUOTE_MINIMAL)
         writer.writerow(columns)
         writer.writerows(zip(*columns.values(), strict=True))
 
