@@ -285,6 +285,14 @@ def test_results_write_a_table_with_a_row_for_each_state(state, tmp_path):
     assert inputs == [[1e-5, 0.1], [2e-5, 0.2]]
 
 
+def test_a_batch_of_no_states_is_not_written(tmp_path):
+    empty = sb.solve_batch(sb.Groups(1e-5, 0.1, 1e-4), speed=np.array([]))
+    assert empty.central_gap.shape == (0,)
+    with pytest.raises(sb.InputError, match="There are no states, as an array of speed is empty"):
+        empty.to_csv(tmp_path / "batch.csv")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_fit_shows_itself_and_is_a_dataset():
     xarray = pytest.importorskip("xarray")
     found = sb.fit(noisy(seed=5_417, rows=8), CONTACT, free=["boundary_friction", "viscosity"], intervals=False)

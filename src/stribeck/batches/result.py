@@ -20,7 +20,7 @@ from stribeck.files.results import Exported, Labelled
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outputs import COLUMNS, OUTPUT_TABLES, OutputTable
 from stribeck.quantities.results import ByValue, Card, Shown
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, listed
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.numbers import columns_of_states, constant_groups, input_attributes, si_films
 from stribeck.solver.point.solution import PointSolution
@@ -164,6 +164,8 @@ class BatchSolution(Exported, Shown, ByValue):
 
     def _labelled(self) -> Labelled:
         flat = self.solutions.ravel()
+        if not flat.size:
+            raise InputError(f"There are no states, as an array of {listed(self.varied)} is empty; give at least one value.")
         solved = np.array([each is not None for each in flat], dtype=bool)
         columns: dict[str, Column] = {}
         for name, (values, unit, label) in columns_of_states(flat[solved].tolist()).items():
