@@ -6,8 +6,6 @@ theory.md, section 12.
 Source: ours; theory.md, section 12.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

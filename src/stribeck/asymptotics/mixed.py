@@ -6,8 +6,6 @@ thinner, and that the inlet takes in more fluid where asperities carry load.
 Source: [BP] Section "Hydrodynamic-to-mixed lubrication transition"; theory.md, section 7.
 """
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from typing import Any, Literal

@@ -6,8 +6,6 @@ A dry pressure begins as :math:`p = k d^{1/2}` at a distance d from its edge, wh
 Source: ours, and the inverse theory of Blok; theory.md, section 13.
 """
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Iterable, Sequence

@@ -5,8 +5,6 @@ With the load fixed, all but a shift of the gap depends on kappa alone.
 Source: [BP] Section "Quasistatic limit"; the second terms are ours.
 """
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

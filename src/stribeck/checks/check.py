@@ -1,7 +1,5 @@
 """A check, and all checks of a contact together."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence

@@ -3,8 +3,6 @@ r"""The exponential contact law of the article, written out for speed, and that 
 Everything is in Hertz units: gap in u_Hz, pressure in p_Hz.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -3,8 +3,6 @@ r"""Contact laws with the tail of a finite surface, which has fewer high asperit
 .. math:: \ln\Phi_\mathrm{finite}(s) = \ln\Phi(s) - c \, (u/h_\mathrm{rms})^3, \qquad u/h_\mathrm{rms} = s/\alpha > 0
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Annotated, Any

@@ -1,7 +1,5 @@
 """Contact law of a user as a function, which is checked when the law is made: values, fall and derivative."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field

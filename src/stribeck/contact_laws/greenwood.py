@@ -14,8 +14,6 @@ Source: [GW] Greenwood and Williamson, Proc. R. Soc. A 295 (1966) 300; [GT] Gree
 (1970) 625; both derived again in docs/contact_laws.md.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache

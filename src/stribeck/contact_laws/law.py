@@ -1,7 +1,5 @@
 r"""The protocols of a contact law: dimensionless, and scaled to a load and a roughness."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from contextlib import suppress

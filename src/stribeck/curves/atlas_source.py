@@ -1,7 +1,5 @@
 """Curves off the atlas: observables and friction of its tables, with their exact slopes."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from functools import partial

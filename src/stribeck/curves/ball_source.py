@@ -1,7 +1,5 @@
 """Curves of balls: observables off solved states with their slopes."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace

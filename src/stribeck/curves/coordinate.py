@@ -1,7 +1,5 @@
 """The coordinate of a curve: speed, load or roughness, one group or one SI quantity on a logarithmic scale."""
 
-from __future__ import annotations
-
 import copy
 import math
 from dataclasses import dataclass, replace

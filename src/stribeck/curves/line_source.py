@@ -1,7 +1,5 @@
 """Curves of cylinders: observables off Taylor series, and states that are solved where they are asked for."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any

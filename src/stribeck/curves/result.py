@@ -1,7 +1,5 @@
 """A Stribeck curve: its points, friction and regimes along them, its minimum and its transitions."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """Sensitivities of the friction of a state: its logarithmic derivatives with respect to the inputs."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The formula of Stribeck friction that simulators of motion take, through a computed curve."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Annotated, Any

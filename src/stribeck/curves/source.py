@@ -1,7 +1,5 @@
 """Where the numbers of a curve come from: what a path of solved states, or the atlas, tells at any place along it."""
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping

@@ -1,7 +1,5 @@
 """Where a Stribeck curve begins and ends: the speeds of the boundary plateau and of the hydrodynamic branch."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The solver along speed, load or roughness: the states of a Stribeck curve, by continuation or off the atlas."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from typing import Any, NoReturn

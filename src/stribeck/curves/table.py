@@ -1,7 +1,5 @@
 """A Stribeck curve as a table: columns with units and long names, and what belongs to the whole curve."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

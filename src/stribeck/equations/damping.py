@@ -1,7 +1,5 @@
 """The longest part of a Newton step that keeps gap and contact pressure in bounds, for line and ball."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from stribeck._types import Array

@@ -18,8 +18,6 @@ that by the identities A and B of theory.md, section 6, and by parts
 The two sides err as fluid and asperities press, and count by the share of the other.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any, NamedTuple

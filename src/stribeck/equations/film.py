@@ -1,7 +1,5 @@
 """The film at the nodes of a mesh: functions of the gap where it is full, zero in the cavity; and what kind of film it is."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias
 

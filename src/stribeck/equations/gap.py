@@ -1,7 +1,5 @@
 """The gap between the nodes: at any position, in the middle, and its minimum."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any

@@ -23,8 +23,6 @@ minus that.
 Source: [BP] Appendix A; theory.md Eqs. (1)-(5).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple

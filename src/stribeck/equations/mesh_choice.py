@@ -1,7 +1,5 @@
 """The mesh that resolves a guess of a state: what of it, and of what is read off it, each panel must resolve."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

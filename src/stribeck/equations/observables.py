@@ -3,8 +3,6 @@
 Friction is kept for beta = 1, to which it is proportional, and in the definitions of :mod:`stribeck.equations.drag`.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, fields, replace
 from typing import Any

@@ -9,8 +9,6 @@ cavity in units of that edge.  All operators are those in xi; the deflection of 
 For a solid with lengths of its own, such as a layer, D itself changes with d.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from functools import lru_cache

@@ -6,8 +6,6 @@ for each group G, with the factors of Newton's Jacobian made anew at the state. 
 :mod:`stribeck.equations.drag`: in thin films the closed form for the article's film errs with the moment of the pressure.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any

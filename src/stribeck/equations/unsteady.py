@@ -21,8 +21,6 @@ the edges are those of the polynomials of the panels.  On the side of the inlet 
 the exit it does where the walls hardly move and the gap closes.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -4,8 +4,6 @@ The state is solved anew for each change, from the last one. What takes longer i
 what belongs to the inputs before stands there meanwhile and is marked stale.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace

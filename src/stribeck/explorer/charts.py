@@ -1,7 +1,5 @@
 """The charts of the page as plain data for ``chart.js``: friction, gap, pressures, shape, film of a ball, map of regimes."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

@@ -3,8 +3,6 @@
 All are read off the atlas where it holds; else the curve is solved, and the map row by row.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress

@@ -1,7 +1,5 @@
 """Files of the page: pictures, data and the case of what is shown."""
 
-from __future__ import annotations
-
 import functools
 import io
 import re

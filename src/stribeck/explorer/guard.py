@@ -3,8 +3,6 @@
 Everything that arrives, pages, sockets and files, passes here first.
 """
 
-from __future__ import annotations
-
 import hmac
 from urllib.parse import urlencode
 

@@ -1,7 +1,5 @@
 """The page in the browser: it shows what it is sent, of which only what changed is sent, and calls back what the user does."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The numbers of an answer, each with its error, as rows for the page."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable, Iterator

@@ -3,8 +3,6 @@
 A surface, a file of heights, becomes the roughness and Persson's law of the contact.
 """
 
-from __future__ import annotations
-
 import re
 import tempfile
 import tomllib

@@ -1,7 +1,5 @@
 """Fluids as users describe them: laws in SI units, or in Hertz units with groups, that become a film; and liquids of them."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from typing import Annotated, Any

@@ -10,8 +10,6 @@ It is zero where half of the surfaces touch, at the mean gap :math:`\sigma/\sqrt
 Source: [Kirkpatrick 1973] for the medium, [Tripp 1983] for the limit of wide gaps.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache

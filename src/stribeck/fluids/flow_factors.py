@@ -12,8 +12,6 @@ of the separation too: at :math:`h_T = 1.083 \sigma` the separation is :math:`\s
 Source: [Patir & Cheng 1978] and [Patir & Cheng 1979] for the fits.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field, replace
 from functools import lru_cache

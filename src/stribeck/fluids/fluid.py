@@ -10,8 +10,6 @@ of :class:`Film`, and ``decay(speed)`` if its pressure does not fall off as an e
 traces of them (:mod:`stribeck.numerics.trace`), so that their derivatives follow.
 """
 
-from __future__ import annotations
-
 from enum import StrEnum
 from typing import Any, NamedTuple, Protocol, Self
 

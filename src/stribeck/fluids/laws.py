@@ -6,8 +6,6 @@ they take values, and values with their derivatives (:mod:`stribeck.numerics.dua
 somebody else wrote is checked: its derivatives, limits and scaling must agree with its values.
 """
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -10,8 +10,6 @@ taken.  Its standard errors count the fits of the same law with and without a pl
 as exp(-BIC/2): a plateau that the rates hardly show moves the other numbers.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 import os

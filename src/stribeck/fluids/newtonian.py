@@ -8,8 +8,6 @@ lambda out, so that the condition on the flux stays well posed at speed zero.
 Source: [BP] Eq. (thin-film_dl); isoviscous fluid, no flow factors.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, NamedTuple, Self, cast

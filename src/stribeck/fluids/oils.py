@@ -16,8 +16,6 @@ gives the one at 100 degrees from that at 40 (ASTM D2270):
 where L and H are the viscosities at 40 degrees of reference oils of index 0 and 100 that have the same :math:`\nu_{100}`.
 """
 
-from __future__ import annotations
-
 import math
 import re
 

@@ -18,8 +18,6 @@ Small molecules turn too fast for the flow to order them until the stress is an 
 shear rate at which a liquid of them thins is that over its viscosity (rotation time of Debye, within a factor of some).
 """
 
-from __future__ import annotations
-
 import difflib
 import inspect
 import math

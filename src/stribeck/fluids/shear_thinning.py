@@ -12,8 +12,6 @@ are two equations for :math:`\tau_m` and G at each node; their derivatives are t
 the fluid for the flow along the film too, so that the film depends on s.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, NamedTuple, Self

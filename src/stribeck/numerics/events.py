@@ -1,7 +1,5 @@
 """Events along a path: zeros and minima of functions whose values are known at places of it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

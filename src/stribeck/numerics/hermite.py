@@ -10,8 +10,6 @@ all digits from K = 10 on.  That of Chebyshev polynomials loses none: where a po
 Source: [Davis 1975] Interpolation and Approximation, section 2.5.
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from typing import Any

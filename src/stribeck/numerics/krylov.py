@@ -3,8 +3,6 @@
 Source: [Saad 2003] Iterative Methods for Sparse Linear Systems, algorithm 9.4.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

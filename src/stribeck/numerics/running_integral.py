@@ -10,8 +10,6 @@ The matrix A of this integral is never formed: inside a panel it is a block of t
 running sum.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -9,8 +9,6 @@ places at distance one.
 Source: [Rasmussen 2006] Gaussian Processes for Machine Learning, sections 2.2, 2.7 and 9.4.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -3,8 +3,6 @@
 The number of threads changes last digits too, so that several threads of a caller need the same one.
 """
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable
 from functools import lru_cache, wraps

@@ -1,7 +1,5 @@
 """The picture of a Stribeck curve: friction, and beside it films, load shares or smooth friction; and of many states."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import partial

@@ -1,7 +1,5 @@
 """Pictures of experiments: which law the data prefer, what to measure next, and all curves as one."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from stribeck.experiments.compare import EXCLUDED_AICC, Comparison

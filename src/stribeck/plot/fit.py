@@ -1,7 +1,5 @@
 """Pictures of measured friction, and of a fit: with the fitted curves and their 95 % bands, and the residuals below."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Pictures with a row for each number: checks over their limits, and the intervals of a state over its values."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

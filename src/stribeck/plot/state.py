@@ -6,8 +6,6 @@ film, with opposite phase where the film vanishes (a black contact):
 .. math:: I = \tfrac12 \left[1 - \cos\frac{4 \pi n h}{\lambda_0} \, e^{-(2 \pi n h \, \Delta\lambda/\lambda_0^2)^2/4}\right] .
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, Literal
 

@@ -1,7 +1,5 @@
 """Picture of a surface: its heights, its spectrum with the fit, and the contact law that follows."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -9,8 +9,6 @@ The next regime begins at the value :math:`X^*` of an input X where a share g pa
 with the exact derivatives of the state there, to first order in the errors.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

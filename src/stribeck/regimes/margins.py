@@ -1,7 +1,5 @@
 """How far a contact is from the next lubrication regime, in speed, load, roughness and viscosity, on solved states."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass

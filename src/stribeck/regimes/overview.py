@@ -3,8 +3,6 @@
 A curve alone has its checks, and what errors of the inputs leave open along it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any

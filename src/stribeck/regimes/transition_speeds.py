@@ -1,7 +1,5 @@
 """A phase diagram read off the atlas: all points at once, transitions located on it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from typing import Any

@@ -19,8 +19,6 @@ They hold a logarithm where r = s, so that the difference of the radii is an arg
 Source: [DLMF] 14.5, 14.10 (recurrence in the degree), 19.5; Miller's algorithm: [DLMF] 3.6.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import scipy
 

@@ -8,8 +8,6 @@ r"""The dry contact of a smooth cylinder in closed form: speed and roughness zer
 Source: [BP] Eqs. (Hertz), (vertical_position_Hz), with the step function of the gap as there.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

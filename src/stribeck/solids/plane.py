@@ -22,8 +22,6 @@ Source: the kernel by Hankel's transform; the plane-strain solution as in solids
 transform of the deflection, as for a half-space.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

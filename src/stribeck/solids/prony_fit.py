@@ -11,8 +11,6 @@ so that for given times, even in the logarithm, non-negative least squares of th
 four times per decade are tried; Bayes' criterion decides.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import re

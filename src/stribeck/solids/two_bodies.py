@@ -5,8 +5,6 @@ r"""Two elastic bodies that press on each other: their deflections add.
 Source: [Johnson 1985] section 4.1, for shapes that differ by little from planes.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated
 

@@ -17,8 +17,6 @@ behind, and the pressure of a dry contact resists the motion by the hysteresis f
 Source: [Hunter 1961] for rolling on the standard linear solid; tested against Parseval's form of the same integral.
 """
 
-from __future__ import annotations
-
 import math
 from typing import ClassVar
 

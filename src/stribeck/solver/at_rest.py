@@ -3,8 +3,6 @@
 A film with a cavity at ambient pressure is solved as one with an exit.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -16,8 +16,6 @@ the shorter it is.  A long one hardly disturbs the film with the exit, behind wh
 again says where the film reforms.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 from collections.abc import Callable, Sequence

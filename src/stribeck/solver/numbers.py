@@ -3,8 +3,6 @@
 Each number has its name, unit, meaning and error; files, JSON, reports and cards read them.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Refining a state until its estimated error is within a tolerance, and reporting how that ended."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

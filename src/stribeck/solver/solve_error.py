@@ -1,7 +1,5 @@
 """The error of a solve that did not reach its tolerance."""
 
-from __future__ import annotations
-
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.base_solution import BaseSolution

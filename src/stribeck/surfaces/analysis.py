@@ -3,8 +3,6 @@
 Each step is a function of its own: read, repair, detrend, spectrum, fit, contact law.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass, field

@@ -9,8 +9,6 @@ about the removed trend, without a filter of waves (ISO 25178-2, ISO 4287); the 
 zero on average for an isotropic surface, with a mean square of one over the number of modes.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Annotated

@@ -1,7 +1,5 @@
 """Tilt and curvature of a scan: the form of the body, found by least squares and removed from its roughness."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Literal, get_args

@@ -1,7 +1,5 @@
 """Heights from the files of instruments: plain text by ourselves, some forty formats through SurfaceTopography."""
 
-from __future__ import annotations
-
 import codecs
 import math
 import os

@@ -1,7 +1,5 @@
 """The isotropic power spectrum of measured heights, from a map or from a line."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Annotated, Literal

@@ -3,8 +3,6 @@
 Waves longer than a scan or shorter than a few of its points are not seen: an interval holds the values for all of them.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable, Iterable

@@ -1,7 +1,5 @@
 """Several scans of one surface: their mean spectrum, the law of it, and intervals from their scatter."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Sequence

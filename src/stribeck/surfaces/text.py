@@ -4,8 +4,6 @@ One column is heights along a line, two are position and height, three x, y and 
 with a line of the scan in each row.  Columns that number the rows, and empty ones, count for nothing.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections import Counter

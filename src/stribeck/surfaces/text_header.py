@@ -1,7 +1,5 @@
 """What the lines above heights in a text file declare: units of columns, sizes of the scan, steps and codes for no height."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """Sweep files: TOML that says what varies becomes a checked design, all states of which are possible."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import math

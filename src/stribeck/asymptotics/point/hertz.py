@@ -3,8 +3,6 @@
 Source: Hertz (1882); K. L. Johnson, Contact Mechanics (1985), Section 3.4.
 """
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

@@ -6,8 +6,6 @@ Far from the contact the pressure is :math:`g(\theta) \, r/h^2` and ruptures alo
 the pressure beyond the rim follow from it.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import partial

@@ -13,8 +13,6 @@ Source: [Jakobsson and Floberg 1957], [Olsson 1965] for the conservation of mass
 the differences upstream.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 

@@ -8,8 +8,6 @@ with the gap :math:`h_\mathrm{e}` at which the film ruptures; :math:`\phi` is th
 right-hand side is the volume that flows there over the mean speed of the walls, between smooth walls that gap.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -3,8 +3,6 @@
 Any contact law has its dry state; that of a law that is soft enough starts the iteration of lubricated contacts.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -12,8 +12,6 @@ sum holds the decaying solutions without a source in a gap :math:`r^2/2`; their 
 the condition at the rim needs their rates alone.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cache
 from typing import Any

@@ -8,8 +8,6 @@ A fluid that thins has an M that depends on the gradient too (:mod:`stribeck.equ
 the fluxes and their derivatives only, whatever the law.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 

@@ -12,8 +12,6 @@ thinning changes the drag through T alone.  The pressure divides the rate at a g
 At the rim and beyond it thins to first order (:mod:`stribeck.equations.point.thinning_far_field`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple

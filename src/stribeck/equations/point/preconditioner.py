@@ -4,8 +4,6 @@ Products of fields with cosines couple modes whose difference is small, as field
 :math:`|m - m'|` up to ``band`` are kept, in single precision.  The row of the load and the column of the offset border them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -3,8 +3,6 @@
 Each list is a table of a case and one of its keys; laws and their numbers are those that the package knows by name.
 """
 
-from __future__ import annotations
-
 import functools
 import json
 import math

@@ -4,8 +4,6 @@ The words are those of the rows: "70 Shore A", "Ra 0.4 um", "46 cSt", "1500 rpm,
 named as in the table of presets, with its conditions: "ISO VG 46 at 60 degC".
 """
 
-from __future__ import annotations
-
 import functools
 import re
 from collections.abc import Iterator

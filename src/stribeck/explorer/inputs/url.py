@@ -4,8 +4,6 @@ The keys are those of a case, ``speed`` of the table ``[contact]`` and ``fluid.m
 An address that says its ``geometry`` is a whole case; another one changes the case with which the page began.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Iterable, Sequence

@@ -5,8 +5,6 @@ r"""Eyring's fluid, whose stress grows as the logarithm of the rate.
 Source: [Eyring 1936].
 """
 
-from __future__ import annotations
-
 from typing import Any, ClassVar, Self
 
 import numpy as np

@@ -14,8 +14,6 @@ Each law is of the form :math:`\tau t/\eta_0 = g(t \dot\gamma)` with one time t,
 Source: [Carreau 1972], [Cross 1965].
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any, ClassVar, Self
 

@@ -8,8 +8,6 @@ r"""Viscosity and density of a fluid as functions of the pressure.
     \frac{\rho}{\rho_0} = \frac{c + k p}{c + p} \quad \text{(Dowson and Higginson)}
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self

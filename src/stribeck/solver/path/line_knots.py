@@ -3,8 +3,6 @@
 Where a cavity opens or closes the observables have a kink: states on both sides are of two kinds.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """States of the line one from another: on the mesh of the previous state while it resolves, else on a refined one."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Mapping, Sequence

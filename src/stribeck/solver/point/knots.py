@@ -1,7 +1,5 @@
 """States of a ball along a path with their slopes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial

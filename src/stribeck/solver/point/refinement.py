@@ -7,8 +7,6 @@ with the finer one of before, unless panels are split first, where their fields 
 A film that re-forms is solved as the full one where its suction stays above the pressure of the cavity.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -6,8 +6,6 @@ for each group G, or an input that changes numbers of fluid or solid, with the p
 the state and GMRES.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace

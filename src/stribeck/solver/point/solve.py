@@ -5,8 +5,6 @@ the pressure of the cushion is the first guess of the film pressure.  So elastic
 If Newton's iteration does not converge from there, the film comes from that of a Newtonian fluid.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from contextlib import suppress
