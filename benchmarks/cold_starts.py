@@ -20,8 +20,9 @@ import numpy as np
 
 import stribeck as sb
 from stribeck.contacts.groups import contact_law
-from stribeck.equations.line import Equations, Operators
+from stribeck.equations.line import Equations
 from stribeck.equations.observables import DRAG_ROWS, ROW, drag_scales, observables
+from stribeck.equations.operators import Operators
 from stribeck.fluids.newtonian import flux_gap
 from stribeck.numerics.newton import StepControl, root_find
 from stribeck.numerics.panels import Mesh

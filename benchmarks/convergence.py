@@ -22,8 +22,8 @@ import scipy
 
 import stribeck as sb
 from stribeck.equations.error_estimate import FineOperators
-from stribeck.equations.line import Operators
 from stribeck.equations.mesh_choice import mesh_for
+from stribeck.equations.operators import Operators
 from stribeck.equations.state import State, solve_state
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
 from stribeck.quantities.outputs import NAMES

@@ -19,7 +19,7 @@ import numpy as np
 from curve_speed import factorisation
 
 from stribeck.cases.reading import load_case
-from stribeck.curves.stribeck_curve import StribeckCurve
+from stribeck.curves.result import StribeckCurve
 from stribeck.explorer.answer import Answerer
 from stribeck.explorer.charts import all_charts
 from stribeck.explorer.inputs import inputs

@@ -32,8 +32,8 @@ import numpy as np
 
 import stribeck as sb
 from stribeck.contacts.with_parts import with_parts
-from stribeck.equations.line import Operators
 from stribeck.equations.observables import observables
+from stribeck.equations.operators import Operators
 from stribeck.equations.state import solve_state
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outputs import ALL_NAMES, NAMES

@@ -14,8 +14,9 @@ from hypothesis import settings
 import stribeck as sb
 from stribeck.contact_laws.scaled import ShiftedLaw
 from stribeck.contacts.groups import contact_law
-from stribeck.equations.line import Equations, Operators
+from stribeck.equations.line import Equations
 from stribeck.equations.observables import observables
+from stribeck.equations.operators import Operators
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.newton import StepControl, root_find
 from stribeck.numerics.panels import Mesh

@@ -16,8 +16,9 @@ from stribeck import Outcome
 from stribeck.contacts.groups import contact_law
 from stribeck.equations.damping import longest_step
 from stribeck.equations.gap import minimum_gap
-from stribeck.equations.line import Equations, Operators
+from stribeck.equations.line import Equations
 from stribeck.equations.observables import ROW, changes, observables
+from stribeck.equations.operators import Operators
 from stribeck.numerics.panels import Mesh
 from stribeck.surfaces import SelfAffine, persson_law
 

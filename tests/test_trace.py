@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from stribeck.numerics.trace import Matrix, Trace, act, matrix_of, pointwise, value_of
+from stribeck.numerics.dual import value_of
+from stribeck.numerics.trace import Matrix, Trace, act, matrix_of, pointwise
 
 pytestmark = pytest.mark.quick
 

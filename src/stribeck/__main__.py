@@ -13,8 +13,6 @@ from importlib.machinery import ModuleSpec, PathFinder
 from importlib.util import LazyLoader
 from types import FrameType
 
-__all__ = ["main"]
-
 NEEDED = 500_000_000
 """Address space that loading the package, a solve and a picture take [byte]; measured are 0.47e9."""
 

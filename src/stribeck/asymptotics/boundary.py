@@ -5,6 +5,8 @@ The contact at rest is that of :mod:`stribeck.asymptotics.rest`, whose formulas 
 Source: [BP] Section "Boundary-to-mixed lubrication transition", Appendix C; theory.md, section 6.
 """
 
+from __future__ import annotations
+
 import math
 from functools import partial
 from typing import Literal

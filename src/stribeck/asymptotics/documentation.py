@@ -5,6 +5,8 @@ its notes.  Headings, other arguments, value, exceptions, range, error and sourc
 entry, and the tables here.
 """
 
+from __future__ import annotations
+
 import inspect
 import re
 from collections.abc import Callable

@@ -11,6 +11,8 @@ which matches theory.md Eq. (8).
 Source: [BP] Appendix B, with the principal value of 1/(xi - eta) for the printed 1/\|x - y\|; theory.md, section 7.
 """
 
+from __future__ import annotations
+
 from functools import lru_cache, partial
 
 import numpy as np

@@ -6,6 +6,8 @@ one condition more than the outlet, and so a solution for one c only: the film t
 Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner, Phys. Fluids 25, 101705 (2013); theory.md, section 7.
 """
 
+from __future__ import annotations
+
 from functools import lru_cache, partial
 
 import numpy as np

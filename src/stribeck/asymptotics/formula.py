@@ -4,6 +4,8 @@ There is no physics here.  Outside its range a formula still returns a value, wi
 where it has no value it returns nan, with a warning.
 """
 
+from __future__ import annotations
+
 import functools
 import inspect
 import math

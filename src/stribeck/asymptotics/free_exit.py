@@ -6,6 +6,8 @@ theory.md, section 12.
 Source: ours; theory.md, section 12.
 """
 
+from __future__ import annotations
+
 import math
 from typing import NamedTuple
 
@@ -16,8 +18,6 @@ from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Value
 from stribeck.quantities.units import InputError, real_array, show
-
-__all__ = ["FreeExit", "SmoothFilm", "boundary_film_with_free_exit", "rigid_film_with_free_exit", "slow_film_with_free_exit"]
 
 MAX_LOAD = 0.9  # Load group up to which the gap in the middle is clearly positive.
 

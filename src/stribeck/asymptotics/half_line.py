@@ -12,6 +12,8 @@ The moments 0, 1, 2 of a are then 1, 0, 0, so that :math:`P_B - P_H` carries no 
 and :math:`\xi^{-5/2}` outside.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

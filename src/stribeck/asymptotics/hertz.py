@@ -3,6 +3,8 @@
 Source: [BP] Eqs. (Hertz), (vertical_position_Hz).
 """
 
+from __future__ import annotations
+
 from functools import partial
 
 import numpy as np

@@ -13,6 +13,8 @@ Source: [BP] Sections "Large deformation limit", "Small deformation limit", "Gen
 theory.md, section 7.
 """
 
+from __future__ import annotations
+
 import math
 from functools import partial
 

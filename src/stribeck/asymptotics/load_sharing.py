@@ -6,6 +6,8 @@ The limits are exact; what lies between is fitted to solved states, 21 600 over 
 Source: ours, with phi of [BP] Appendix D; theory.md, section 10.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 

@@ -6,6 +6,8 @@ thinner, and that the inlet takes in more fluid where asperities carry load.
 Source: [BP] Section "Hydrodynamic-to-mixed lubrication transition"; theory.md, section 7.
 """
 
+from __future__ import annotations
+
 import math
 from functools import partial
 from typing import Any, Literal
@@ -18,8 +20,6 @@ from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.hydrodynamic import central_gap, central_gap_large, friction_large, friction_uniform
 from stribeck.contacts.groups import Groups
-
-__all__ = ["Film", "contact_load_share", "friction"]
 
 Film = Literal["uniform", "central", "large"]
 

@@ -8,6 +8,8 @@ set of panels serves them all.
 Source: [BP] Appendix C and D, with the cubes that the former lacks; theory.md, section 7; the quadrature is ours.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -6,6 +6,8 @@ A dry pressure begins as :math:`p = k d^{1/2}` at a distance d from its edge, wh
 Source: ours, and the inverse theory of Blok; theory.md, section 13.
 """
 
+from __future__ import annotations
+
 import math
 import warnings
 from collections.abc import Iterable, Sequence
@@ -22,8 +24,6 @@ from stribeck.files.results import Labelled, Tabled
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.results import ByValue, Card, Shown, Told
 from stribeck.quantities.units import InputError, show, to_si
-
-__all__ = ["Films", "Inlet", "PressureFilm", "film_of_pressure"]
 
 EDGE_CONSTANT = FILM_CONSTANT * 2**0.2  # h* over (6 eta U)^(3/5) E*^(1/5) k^(-4/5)
 

@@ -5,6 +5,8 @@ With the load fixed, all but a shift of the gap depends on kappa alone.
 Source: [BP] Section "Quasistatic limit"; the second terms are ours.
 """
 
+from __future__ import annotations
+
 import math
 from functools import partial
 

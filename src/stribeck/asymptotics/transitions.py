@@ -7,6 +7,8 @@ one on either side of k = 0.4968 or none, see :func:`weakening_number`.  Ours is
 Source: [BP] Sections "Hydrodynamic-to-mixed lubrication transition", "Boundary-to-mixed lubrication transition", "Conclusion".
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from functools import partial

@@ -6,6 +6,8 @@ of the contact pressure that the paper's definition of the friction contains.
 Source: ours; theory.md, sections 6 and 10.
 """
 
+from __future__ import annotations
+
 from functools import partial
 from typing import Literal
 

@@ -6,6 +6,8 @@ the smooth contact are in it: it holds for n << kappa**(-1/3).
 Source: ours, from [BP] Eqs. (thin-film_dl), (contact_pressure_dl), (Hertz); theory.md, section 10.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from functools import lru_cache

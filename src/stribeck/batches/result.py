@@ -1,5 +1,7 @@
 """What :func:`stribeck.solve_batch` returns: many states, whose numbers are read off them as arrays."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace

@@ -1,5 +1,7 @@
 """Inputs of a contact from a measured friction loop: strokes solved in time, least squares, intervals."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field, replace

@@ -1,5 +1,7 @@
 """A Stribeck curve made of raw files of a rig: its points with their errors, and what became of each row."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from importlib.metadata import version

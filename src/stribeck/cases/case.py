@@ -1,5 +1,7 @@
 """A case: one contact with what is asked of it, in SI units."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,5 +1,7 @@
 """A check, and all checks of a contact together."""
 
+from __future__ import annotations
+
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence

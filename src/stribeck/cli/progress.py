@@ -1,5 +1,7 @@
 """Progress, as a bar on a terminal and else as a line now and then, and when Ctrl-C takes effect."""
 
+from __future__ import annotations
+
 import _thread
 import math
 import signal

@@ -1,5 +1,7 @@
 """Running the command: arguments, exit codes, and errors as sentences."""
 
+from __future__ import annotations
+
 import os
 import signal
 import sys

@@ -1,5 +1,7 @@
 """Commands that solve: one state, a curve, the regimes of a contact, the figures of the article."""
 
+from __future__ import annotations
+
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any

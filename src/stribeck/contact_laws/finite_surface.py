@@ -3,6 +3,8 @@ r"""Contact laws with the tail of a finite surface, which has fewer high asperit
 .. math:: \ln\Phi_\mathrm{finite}(s) = \ln\Phi(s) - c \, (u/h_\mathrm{rms})^3, \qquad u/h_\mathrm{rms} = s/\alpha > 0
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from typing import Annotated, Any
@@ -14,8 +16,6 @@ from stribeck.contact_laws.law import AsperityLaw, WithArea, as_asperity_law, is
 from stribeck.contact_laws.persson import PerssonLaw
 from stribeck.quantities.docstrings import Described
 from stribeck.quantities.units import InputError, show, to_si
-
-__all__ = ["TAIL_COEFFICIENT", "FiniteSurface", "has_endless_tail"]
 
 # c, through the two mean gaps above 1.5 h_rms of examples/gfmd_mean_gap.csv, over Persson's law of the same spectrum.
 TAIL_COEFFICIENT = 0.065

@@ -1,5 +1,7 @@
 """Contact law of a user as a function, which is checked when the law is made: values, fall and derivative."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -10,9 +12,6 @@ from stribeck.contact_laws.law import check_falls
 from stribeck.numerics.trace import pointwise
 from stribeck.quantities.docstrings import Described
 from stribeck.quantities.units import InputError, show
-
-__all__ = ["FunctionLaw"]
-
 
 # Names that outputs use for the laws of the package and for smooth surfaces.
 RESERVED_NAMES = ("exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table", "smooth")

@@ -30,13 +30,11 @@ import scipy
 
 from stribeck._types import Array, Indices
 from stribeck.contact_laws.spectrum import OF_HEIGHT, SCALED, TOO_HIGH, SelfAffine, Spectrum, height_of_roughness, table_of
-from stribeck.numerics.trace import value_of
+from stribeck.numerics.dual import value_of
 from stribeck.quantities.docstrings import Described, told
 from stribeck.quantities.results import ByValue
 from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError
-
-__all__ = ["GAMMA", "GAMMA_INPUT", "PerssonLaw", "exponential_limit", "persson_law"]
 
 GAMMA = 0.45  # Reduction of the elastic energy; 0.42 to 0.45 fit simulations [YP08].
 

@@ -29,9 +29,6 @@ from stribeck.quantities.results import ByValue
 from stribeck.quantities.schema import Input, law
 from stribeck.quantities.units import InputError, RowError, show
 
-__all__ = ["SelfAffine", "Spectrum", "height_of_roughness", "positive", "table_of"]
-
-
 # What methods say that scale roughness.
 OF_HEIGHT = "Spectrum, SelfAffine or PerssonLaw\n    The same kind, of the other height."
 SCALED = {"rms_height": "float\n    Root mean square of the height [m]."}

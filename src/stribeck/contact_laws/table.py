@@ -22,8 +22,6 @@ from stribeck.numerics.trace import pointwise
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import InputError, RowError, real_array, show
 
-__all__ = ["TableLaw"]
-
 MIN_ROWS = 4  # Least rows of a tabulated law.
 
 HEADERS = "the first line must be 'separation, pressure', or with units such as 'gap [mm], pressure [MPa]'"

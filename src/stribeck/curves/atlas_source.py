@@ -20,8 +20,6 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE
 from stribeck.solver.solve import solve
 
-__all__ = ["AtlasSource"]
-
 OBSERVABLES = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "flux_gap", "offset")
 PLACES_PER_DECADE = 20  # Places between which events are looked for
 ERROR_LENGTH = 2.0  # Change of ln(value) over which the error of a table may turn, in that of a slope

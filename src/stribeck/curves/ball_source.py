@@ -24,8 +24,6 @@ from stribeck.solver.point.solution import PointSolution, finish_point, solution
 from stribeck.solver.point.solve import RTOL_RANGE
 from stribeck.solver.solve_error import SolveError, describe
 
-__all__ = ["BallSource", "ball_source"]
-
 SLOPE_LOG_STEP = 1e-4  # Step of ln(value) in central differences of the friction, for its minimum
 
 

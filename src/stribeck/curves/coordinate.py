@@ -17,8 +17,6 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solver.solve import as_groups
 
-__all__ = ["Coordinate", "Over", "check_inside", "check_points", "given_values", "plain_numbers", "read_problem"]
-
 Over = Literal["speed", "load", "roughness"]
 
 POINTS_RANGE = (2, 100_000)  # Fewest and most points of a curve

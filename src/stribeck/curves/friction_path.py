@@ -32,8 +32,6 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.lazy import cached_property
 from stribeck.solver.solve_error import SolveError
 
-__all__ = ["FrictionPath"]
-
 LOCATION_LOG_TOLERANCE = 1e-9  # Change of ln(value) to which a landmark is located; errors of its state are added
 LOG_STEP = 1e-3  # Step of ln(value) in derivatives by real differences
 MAX_POLISH_STATES = 4  # Most states solved for one landmark: each squares the error

@@ -27,8 +27,6 @@ from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, solution_of, state_notes, stated_errors
 from stribeck.solver.solve_error import SolveError, describe
 
-__all__ = ["COLUMNS", "CurvePoint", "LineSource"]
-
 MAX_STATE_RTOL = 1e-6  # Largest rtol of a landmark's state unless another is asked for: landmarks are a curve's headline
 FIELD_LOG_STEP = 1e-3  # Step of ln(value) in differences of what follows from fields between states
 

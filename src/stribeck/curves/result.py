@@ -1,5 +1,7 @@
 """A Stribeck curve: its points, friction and regimes along them, its minimum and its transitions."""
 
+from __future__ import annotations
+
 import math
 import re
 from dataclasses import dataclass, field, replace
@@ -29,8 +31,6 @@ from stribeck.quantities.outputs import OUTPUT_TABLES
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.numbers import si_films
-
-__all__ = ["StribeckCurve", "path_of", "with_contact"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

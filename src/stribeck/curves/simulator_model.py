@@ -1,5 +1,7 @@
 """The formula of Stribeck friction that simulators of motion take, through a computed curve."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from typing import Annotated, Any
@@ -10,8 +12,6 @@ from stribeck._types import Array
 from stribeck.files.results import Record
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.units import InputError
-
-__all__ = ["StribeckModel", "simulator_model"]
 
 POINTS = 121  # Points of the curve, evenly in ln(speed), that the formula is fitted to
 EXPONENTS = (0.5, 1.0, 2.0)  # First values of the exponent

@@ -15,8 +15,6 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown, brief_text
 
-__all__ = ["Coefficients", "CurveValues", "Parts", "Progress", "Readings", "Source"]
-
 Coefficients = tuple[Any, float, Definition]
 """boundary_friction or another friction of asperities, beta, and the definition of the viscous friction."""
 

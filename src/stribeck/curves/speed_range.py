@@ -10,8 +10,8 @@ from stribeck._types import Array
 from stribeck.asymptotics import hydrodynamic
 from stribeck.contacts.friction import Definition, friction_share
 from stribeck.contacts.groups import BASE_MODEL, Groups, contact_law
-from stribeck.equations.line import LOAD
 from stribeck.equations.observables import ROW
+from stribeck.equations.operators import LOAD
 from stribeck.numerics.continuation import follow
 from stribeck.numerics.dual import Dual
 from stribeck.numerics.events import first_zero
@@ -25,8 +25,6 @@ from stribeck.solver.path.path import Expansion, SolvedPath
 from stribeck.solver.point.solution import solution_of
 from stribeck.solver.point.state import PointState
 from stribeck.solver.solve_error import SolveError, describe
-
-__all__ = ["SPEEDS", "automatic_speed_range", "fastest", "grown", "no_range", "part_of_contact"]
 
 SPEEDS = (1e-12, 1e12)  # Smallest and largest speed group of a curve that chooses its own range
 SMOOTH = (1e-9, 10.0)  # Speed groups of curves of smooth surfaces, which have no plateau

@@ -20,7 +20,7 @@ from stribeck.curves.ball_source import ball_source
 from stribeck.curves.coordinate import Coordinate, Over, check_inside, check_points, read_problem
 from stribeck.curves.friction_path import FrictionPath
 from stribeck.curves.line_source import LineSource
-from stribeck.curves.regime import Landmark, Method, check_method
+from stribeck.curves.regime import Method, check_method
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.source import Coefficients, Progress
 from stribeck.curves.speed_range import SPEEDS, automatic_speed_range, fastest, grown, no_range, part_of_contact
@@ -35,8 +35,6 @@ from stribeck.solver.path.line_path import LineProblem, line_problem
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import check_rtol, finish, with_law
 from stribeck.solver.solve_error import SolveError, describe
-
-__all__ = ["Landmark", "StribeckCurve", "begun", "stribeck_curve"]
 
 
 @answers_typos

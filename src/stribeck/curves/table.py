@@ -12,8 +12,6 @@ from stribeck.files.results import Labelled
 from stribeck.quantities.outputs import COLUMNS, GROUPS, OUTPUT_TABLES, friction_rows
 from stribeck.solver.numbers import about_problem, columns_of_states, problem_attributes
 
-__all__ = ["curve_dict", "curve_table", "marks_of"]
-
 Columns = dict[str, tuple[Any, str, str]]
 
 WORDS = ("regime", "outcome")  # Columns that hold text

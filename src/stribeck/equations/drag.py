@@ -26,13 +26,13 @@ import numpy as np
 
 from stribeck._types import Array, Numbers
 from stribeck.equations.film import Nodes, at_nodes
-from stribeck.equations.line import LOAD, Equations, Fields
+from stribeck.equations.line import Equations, Fields
+from stribeck.equations.operators import LOAD
 from stribeck.fluids.fluid import Film
+from stribeck.numerics.dual import value_of
 from stribeck.numerics.running_integral import RunningIntegral
-from stribeck.numerics.trace import Matrix, Trace, act, value_of
+from stribeck.numerics.trace import Matrix, Trace, act
 from stribeck.solids.solid import lengths_of
-
-__all__ = ["FilmOnMesh", "friction_scale", "viscous_friction"]
 
 Clip = Callable[[Array, Array], Array]  # (values here, values at the coarse nodes) -> values to take
 

@@ -25,8 +25,6 @@ from stribeck.solids.half_plane import (
     panels_from_infinity,
 )
 
-__all__ = ["EnrichedOperators", "FineOperators"]
-
 
 def _by_highest(s: Array, order: int) -> Array:
     """Moments of the logarithm with the degrees that a panel of ``order`` nodes gains, at those targets s that are near."""

@@ -31,7 +31,7 @@ from stribeck._types import Array, Flags
 from stribeck.equations.drag import FilmOnMesh, viscous_friction
 from stribeck.equations.enriched import EnrichedOperators, FineOperators
 from stribeck.equations.film import is_thinning, jump_of
-from stribeck.equations.line import LOAD, Equations, Fields
+from stribeck.equations.line import Equations, Fields
 from stribeck.equations.observables import (
     DRAG_ROWS,
     GAP_ROWS,
@@ -44,6 +44,7 @@ from stribeck.equations.observables import (
     error_scales,
     stretch_of,
 )
+from stribeck.equations.operators import LOAD
 from stribeck.equations.state import State
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
 from stribeck.numerics.settings import DEFECT_SAFETY, EPSILON, NEGLIGIBLE, ROUNDING, SAFETY, SIGN_PATTERNS

@@ -7,11 +7,10 @@ import numpy as np
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.fluids.fluid import Decay, Film
+from stribeck.numerics.dual import value_of
 from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.numerics.series import Jet
-from stribeck.numerics.trace import Trace, pointwise, value_of
-
-__all__ = ["NODAL", "Nodes", "at_nodes", "closed_gap", "decay_of", "gradient_in_film", "is_rough", "is_thinning", "jump_of"]
+from stribeck.numerics.trace import Trace, pointwise
 
 NODAL = ("gap", "pressure")  # Unknowns that have a value at every node
 

@@ -41,8 +41,6 @@ from stribeck.numerics.panels import Mesh
 from stribeck.numerics.trace import Matrix, Operator, Trace, act, mapped, matrix_of, pointwise
 from stribeck.quantities.lazy import cached_property
 
-__all__ = ["LOAD", "Equations", "Operators"]
-
 
 class Fields(NamedTuple):
     """Unknowns, or the rows of the residual, by name: values or traces; None where the model has none."""

@@ -26,8 +26,6 @@ from stribeck.numerics.settings import (
 )
 from stribeck.solids.solid import Lengths
 
-__all__ = ["halvings_for", "mesh_for"]
-
 
 def kinks_of(guess: Guess, film: Film, x: Array, at_gap: float | None) -> Array:
     """Return where there is a kink, between the places ``x`` of a guess."""

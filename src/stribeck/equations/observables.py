@@ -15,25 +15,14 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.drag import FilmOnMesh, viscous_friction
 from stribeck.equations.gap import gap_beside, minimum_gap
-from stribeck.equations.line import LOAD, Equations, Fields
+from stribeck.equations.line import Equations, Fields
+from stribeck.equations.operators import LOAD
 from stribeck.equations.state import State
+from stribeck.numerics.dual import value_of
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.settings import FLOOR, LOG_STEP
-from stribeck.numerics.trace import Trace, act, value_of
+from stribeck.numerics.trace import Trace, act
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, GROUPS, RUPTURE_ROWS
-
-__all__ = [
-    "ROW",
-    "Observables",
-    "area_by_pressure",
-    "area_derivatives",
-    "area_of_state",
-    "changes",
-    "measured",
-    "minimum_of",
-    "observables",
-    "real_area",
-]
 
 ROW = {name: row for row, name in enumerate(ALL_NAMES)}  # Index of each in such an array
 

@@ -20,10 +20,11 @@ from stribeck._types import Array
 from stribeck.contacts.groups import BASE_MODEL, Model
 from stribeck.fluids.fluid import Cavitation
 from stribeck.fluids.newtonian import Newtonian
+from stribeck.numerics.dual import value_of
 from stribeck.numerics.panels import HalfTail, Mesh, reference
 from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.numerics.settings import HALF_DIGITS
-from stribeck.numerics.trace import Matrix, Trace, act, pointwise, value_of
+from stribeck.numerics.trace import Matrix, Trace, act, pointwise
 from stribeck.quantities.lazy import cached_property
 from stribeck.solids.half_plane import HalfPlane, deflection_by_half_tail
 from stribeck.solids.solid import Solid

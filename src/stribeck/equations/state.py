@@ -18,7 +18,8 @@ from stribeck._types import Array
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.film import is_thinning
 from stribeck.equations.gap import minimum_gap
-from stribeck.equations.line import Equations, Operators
+from stribeck.equations.line import Equations
+from stribeck.equations.operators import Operators
 from stribeck.numerics.continuation import steady_weights
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
 from stribeck.numerics.panels import Mesh, reference

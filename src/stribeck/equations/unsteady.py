@@ -30,19 +30,11 @@ import numpy as np
 from stribeck._types import Array, Flags
 from stribeck.equations.line import Equations, Fields
 from stribeck.fluids.fluid import Film
+from stribeck.numerics.dual import value_of
 from stribeck.numerics.panels import Mesh, reference
 from stribeck.numerics.running_integral import RunningIntegral
-from stribeck.numerics.trace import Matrix, Operator, act, value_of
+from stribeck.numerics.trace import Matrix, Operator, act
 from stribeck.quantities.lazy import cached_property
-
-__all__ = [
-    "FilmBetween",
-    "Unsteady",
-    "film_between",
-    "integral_up_to",
-    "swallowed",
-    "swallowed_up_to",
-]
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,6 +3,8 @@ r"""Which contact law, cavitation or fluid measured friction prefers, and by how
 .. math:: \mathrm{AICc} = -2 \ln L + 2 k + \frac{2 k (k + 1)}{n - k - 1}, \qquad w \propto e^{-\mathrm{AICc}/2}
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,5 +1,7 @@
 """A published experiment against the model: predicted without a fit from inputs that each have a source and an error."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

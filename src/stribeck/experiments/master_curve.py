@@ -1,5 +1,7 @@
 """Friction of all fluids and loads over one abscissa: whether it is one curve, and which measurements break it."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace

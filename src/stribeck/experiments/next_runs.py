@@ -6,6 +6,8 @@ with the information I of the data so far, C its inverse, and j the exact deriva
 logarithms of the fitted inputs at the state to be measured.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field

@@ -17,8 +17,9 @@ from stribeck.atlas.tables import table_for
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS, Definition, FrictionArray
 from stribeck.contacts.friction_rules import RULES
-from stribeck.curves.regime import Transition
-from stribeck.curves.stribeck_curve import Landmark, StribeckCurve, stribeck_curve
+from stribeck.curves.regime import Landmark, Transition
+from stribeck.curves.result import StribeckCurve
+from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.units import InputError
 from stribeck.regimes.transition_speeds import transition_speeds

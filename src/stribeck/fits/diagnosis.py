@@ -9,6 +9,8 @@ order are judged by drawing: white noise, made a residual by the same linearised
 what the fit takes out of the noise is counted.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -3,6 +3,8 @@
 Every value that is refused is named with its row and column; what is left out or assumed is said in a note.
 """
 
+from __future__ import annotations
+
 import glob
 import math
 import os

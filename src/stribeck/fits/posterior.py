@@ -5,6 +5,8 @@ integrated over with the prior 1/sigma, and errors that were given count larger 
 All walkers are evaluated at once on the atlas.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Annotated, Any

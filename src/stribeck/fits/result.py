@@ -1,5 +1,7 @@
 """What a fit returns: values with intervals, how it ended, and what to know before using it."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field

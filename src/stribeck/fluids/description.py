@@ -1,5 +1,7 @@
 """Fluids as users describe them: laws in SI units, or in Hertz units with groups, that become a film; and liquids of them."""
 
+from __future__ import annotations
+
 import re
 from dataclasses import dataclass
 from typing import Annotated, Any
@@ -11,8 +13,6 @@ from stribeck.fluids.rheology.viscosity import Constant, Incompressible, check_r
 from stribeck.quantities.docstrings import Described
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError, show, to_si
-
-__all__ = ["Fluid", "as_flow_factors", "as_fluid"]
 
 MAX_RELAXATION_TIME = 1e100  # Largest relaxation time and largest rate [Hertz units]: squares of rates stay finite.
 

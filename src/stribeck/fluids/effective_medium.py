@@ -23,8 +23,6 @@ from stribeck._types import Array
 from stribeck.fluids.flow_factors import MIN_FLOW_FACTOR, OfGaussianSurfaces, add_floor, nominal_separation
 from stribeck.numerics.cells import Cells
 
-__all__ = ["PERCOLATION", "EffectiveMedium"]
-
 # Mean gap over the roughness at which half of the surfaces touch and the last path of the fluid closes.
 PERCOLATION = 1 / math.sqrt(2 * math.pi)
 

@@ -26,8 +26,6 @@ from stribeck.numerics.dual import with_slope
 from stribeck.numerics.trace import pointwise
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["MIN_FLOW_FACTOR", "OfGaussianSurfaces", "PatirCheng", "add_floor", "nominal_separation"]
-
 MIN_FLOW_FACTOR = 1e-4  # Least pressure flow factor: without any flow the pressure gradient would have no bound.
 
 # Fraction of the way from the end of the fits to their zero on which they go over into an exponential.

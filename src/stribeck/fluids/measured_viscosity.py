@@ -10,6 +10,8 @@ taken.  Its standard errors count the fits of the same law with and without a pl
 as exp(-BIC/2): a plateau that the rates hardly show moves the other numbers.
 """
 
+from __future__ import annotations
+
 import itertools
 import math
 import os
@@ -32,8 +34,6 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.schema import numbers_of
 from stribeck.quantities.units import InputError, positive_columns, show
-
-__all__ = ["FlowCurve", "flow_curve", "read_flow_curve"]
 
 MIN_VALUES = 5  # Values from which a law is fitted: with fewer, two parameters and the scatter leave nothing to judge
 LAWS: Mapping[str, type[Any] | None] = {"newtonian": None, "power-law": PowerLaw, "cross": Cross, "carreau": Carreau}

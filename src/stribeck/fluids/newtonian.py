@@ -18,8 +18,8 @@ from stribeck._types import Array, Numbers
 from stribeck.fluids.fluid import MAX_CACHED_SHAPES, Film
 from stribeck.fluids.laws import DensityLaw, FlowFactors, Smooth, ViscosityLaw, joined_names, joined_parameters, notes_of
 from stribeck.fluids.rheology.viscosity import Constant, Incompressible
-from stribeck.numerics.dual import with_slope
-from stribeck.numerics.trace import mapped, pointwise, value_of
+from stribeck.numerics.dual import value_of, with_slope
+from stribeck.numerics.trace import mapped, pointwise
 from stribeck.quantities.lazy import cached_property
 
 ONE = np.ones(())

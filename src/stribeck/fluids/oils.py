@@ -24,8 +24,6 @@ from stribeck.numerics.newton import root_between
 from stribeck.quantities.docstrings import told
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["OIL_EYRING_STRESS", "centistokes", "iso_vg", "oil"]
-
 OIL_EYRING_STRESS = 3e6  # Stress kT per molecule of PAO 10 (0.63 kg/mol), rounded down [Pa].
 
 THERMAL_EXPANSION = 0.65  # Density that mineral oils lose per kelvin [kg/m^3/K]

@@ -18,6 +18,8 @@ Small molecules turn too fast for the flow to order them until the stress is an 
 shear rate at which a liquid of them thins is that over its viscosity (rotation time of Debye, within a factor of some).
 """
 
+from __future__ import annotations
+
 import difflib
 import inspect
 import math
@@ -32,8 +34,6 @@ from stribeck.fluids.rheology.rate_laws import Carreau, Cross
 from stribeck.fluids.rheology.viscosity import Roelands
 from stribeck.quantities.docstrings import Described, told
 from stribeck.quantities.units import InputError, show, to_si
-
-__all__ = ["PRESETS", "Preset", "glycerol_water", "water"]
 
 WATER_EYRING_STRESS = 1e8  # Stress kT per molecule of water, rounded down [Pa].
 GLYCEROL_EYRING_STRESS = 3e7  # Stress kT per molecule of glycerol, rounded down [Pa].

@@ -24,9 +24,8 @@ from stribeck.fluids.laws import DensityLaw, Profile, RateLaw, ViscosityLaw, joi
 from stribeck.fluids.local_flow import profile
 from stribeck.fluids.newtonian import Column, Newtonian
 from stribeck.fluids.rheology.viscosity import Constant, Incompressible
-from stribeck.numerics.trace import Trace, mapped, pointwise, value_of
-
-__all__ = ["ShearThinning"]
+from stribeck.numerics.dual import value_of
+from stribeck.numerics.trace import Trace, mapped, pointwise
 
 MIN_WEISSENBERG = 1e-60  # Weissenberg number at rest: the viscosity is that of low rates, and squares stay above zero.
 

@@ -15,8 +15,6 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.numerics.dual import Dual
 
-__all__ = ["Cells"]
-
 
 @dataclass(frozen=True, eq=False)
 class Cells:

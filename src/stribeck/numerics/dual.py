@@ -17,8 +17,6 @@ import numpy as np
 
 from stribeck._types import Array
 
-__all__ = ["PARTIALS", "Dual", "FirstOrder", "chained", "slope_of", "value_of", "with_slope"]
-
 
 class FirstOrder:
     """A value with first derivatives, in whatever form: what arithmetic and the functions of numpy make of it."""

@@ -11,8 +11,6 @@ from stribeck.numerics.newton import root_between
 from stribeck.numerics.settings import HALF_DIGITS
 from stribeck.quantities.lazy import cached_property
 
-__all__ = ["Event", "first_zero", "least_by_slope", "rising_zeros", "zero_of_growing"]
-
 SLOPE_STEP: float = HALF_DIGITS ** (1 / 3)  # Largest step in the slope of a function at its event, known to half of the digits
 
 Function = Callable[[float], float]

@@ -20,18 +20,6 @@ from stribeck._types import Array
 from stribeck.numerics.dual import Dual
 from stribeck.numerics.settings import EPSILON, INNER_PLACES
 
-__all__ = [
-    "chebyshev_basis",
-    "chebyshev_form",
-    "chebyshev_nodes",
-    "hermite_form",
-    "hermite_weights",
-    "inner_places",
-    "missed_by",
-    "slope_noise",
-    "weights_through",
-]
-
 
 def inner_places() -> Array:
     """Return the parts of an interval at which it is checked."""

@@ -16,8 +16,6 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.numerics.settings import HALF_DIGITS
 
-__all__ = ["Scattered", "lengths_of"]
-
 
 @dataclass(eq=False)
 class Scattered:

@@ -27,16 +27,6 @@ from numpy.polynomial.polynomial import polyval
 from stribeck._types import Array, Flags
 from stribeck.numerics.settings import COEFFICIENT_NOISE, HALF_DIGITS, MAX_LOG_STEP
 
-__all__ = [
-    "Jet",
-    "Tape",
-    "along",
-    "beyond",
-    "implicit_series",
-    "polynomial",
-    "radius",
-]
-
 
 def along(rate: float, order: int) -> Array:
     """Return the series of ``exp(rate t)``."""

@@ -20,8 +20,6 @@ from stribeck._types import Array, Numbers
 from stribeck.numerics.dual import Dual, FirstOrder, chained, value_of
 from stribeck.numerics.series import Jet
 
-__all__ = ["Matrix", "Operator", "Trace", "Value", "act", "mapped", "matrix_of", "pointwise", "value_of"]
-
 
 class Operator(Protocol):
     """A constant linear map of nodal values."""

@@ -3,6 +3,8 @@
 ``speed: Annotated[float, "the sum of both speeds", "m/s"]`` says a field of a result in the docstring and in files.
 """
 
+from __future__ import annotations
+
 import ast
 import inspect
 import re

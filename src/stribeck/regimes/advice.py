@@ -1,5 +1,7 @@
 """What a designer is told: the regime of a contact, the way to the next ones, and the inputs that lower its friction."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

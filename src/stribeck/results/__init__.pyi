@@ -17,9 +17,9 @@ from stribeck.experiments.next_runs import Plan
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.result import Fit, FitOutcome, FittedInput
 from stribeck.quantities.standard_errors import StandardErrors
-from stribeck.solver.fields import Field
+from stribeck.solver.fields import Field, Profile
 from stribeck.solver.point.solution import PointSolution
-from stribeck.solver.solution import Profile, Solution
+from stribeck.solver.solution import Solution
 from stribeck.strokes.result import Stroke
 from stribeck.sweeps.design import SweepDesign
 from stribeck.sweeps.sweep import Sweep, SweepProgress

@@ -36,8 +36,6 @@ from stribeck.quantities.schema import Input, law
 from stribeck.solids.half_plane import nodal_deflection
 from stribeck.solids.solid import Lengths, Solid
 
-__all__ = ["Layer"]
-
 KERNEL_RADIUS = 24.0  # Distance [thicknesses] at which the kernel, below 3e-9 there, is cut to zero.
 
 KERNEL_COEFFICIENTS = 160  # Chebyshev coefficients of the smooth part of the kernel, good to 1e-13.

@@ -40,8 +40,6 @@ from stribeck.solids.half_plane import HalfPlane
 from stribeck.solids.half_space import deflection_by_mode
 from stribeck.solids.layer import KERNEL_RADIUS, MAX_WAVENUMBER, Layer, smooth_on_cells, transfer
 
-__all__ = ["BODIES", "MIN_LAYER_THICKNESS", "PlaneBody", "layer_by_mode", "smooth_kernel"]
-
 MIN_LAYER_THICKNESS = 0.2  # Thinnest layer under a ball, in Hertz radii of a half-space: thinner ones are not tested
 
 LOCAL_ABOVE = 6.0  # Half-width of a panel [thicknesses] above which its pressure acts at its own nodes only.

@@ -11,6 +11,8 @@ so that for given times, even in the logarithm, non-negative least squares of th
 four times per decade are tried; Bayes' criterion decides.
 """
 
+from __future__ import annotations
+
 import math
 import os
 import re
@@ -27,8 +29,6 @@ from stribeck.quantities.results import Card, Told
 from stribeck.quantities.schema import Input
 from stribeck.quantities.units import InputError, positive_columns, show
 from stribeck.solids.viscoelastic import MAX_TERMS, Prony
-
-__all__ = ["PronyFit", "fit_prony", "from_master_curve"]
 
 MIN_VALUES = 5  # Frequencies from which a series is fitted: with fewer nothing is left to judge it
 TIMES_PER_DECADE = (1, 2, 3, 4)  # Densities of relaxation times that are tried; with more, neighbours cannot be told apart

@@ -5,6 +5,8 @@ r"""Two elastic bodies that press on each other: their deflections add.
 Source: [Johnson 1985] section 4.1, for shapes that differ by little from planes.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -16,8 +18,6 @@ from stribeck.quantities.docstrings import Described
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solids.half_plane import as_solid
 from stribeck.solids.solid import Lengths, Solid, lengths_of
-
-__all__ = ["TwoBodies"]
 
 
 @dataclass(frozen=True, init=False)

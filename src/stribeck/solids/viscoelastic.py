@@ -30,8 +30,6 @@ from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.solids.half_plane import HalfPlane, as_solid
 from stribeck.solids.solid import Lengths, Solid, lengths_of
 
-__all__ = ["Memory", "Prony", "StandardLinearSolid", "creep_of_relaxation", "hysteresis_friction"]
-
 MAX_TERMS = 40  # Terms of a Prony series that are accepted.
 
 MEMORY_DECAY = 37.0  # Retardation times after which what is left of a pressure is rounding.

@@ -30,8 +30,6 @@ from stribeck.solver.numbers import about_problem, constant_groups, main_rows, n
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["BaseSolution", "Profile", "regime_of_state"]
-
 
 class BaseSolution(Exported, Shown, ByValue, ABC):
     """One solved state; see the solution of a geometry for its fields."""

@@ -29,8 +29,8 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.groups import BASE_MODEL, Groups, Model, contact_law
 from stribeck.equations.film import is_rough
-from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.mesh_choice import mesh_for
+from stribeck.equations.operators import LOAD, Operators
 from stribeck.equations.state import MIN_GAP, Guess, State, extrapolate, solve_state
 from stribeck.fluids.fluid import Cavitation
 from stribeck.fluids.newtonian import Newtonian, blend
@@ -47,15 +47,6 @@ from stribeck.numerics.settings import (
     NEGLIGIBLE,
 )
 from stribeck.quantities.units import InputError
-
-__all__ = [
-    "coarse_path",
-    "coarse_state",
-    "cold_start",
-    "first_path",
-    "is_lost_to_rounding",
-    "path_to_cavity",
-]
 
 MAX_LOG_HEIGHT = 0.5 * math.log(sys.float_info.max)  # Of rigid films whose powers double precision holds
 

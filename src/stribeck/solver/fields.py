@@ -18,8 +18,6 @@ from stribeck.quantities.results import ByValue, Shown
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["UNITS", "Field", "Profile", "columns_of"]
-
 UNITS = {"Hertz": ("a", "u_Hz", "p_Hz"), "SI": ("m", "m", "Pa")}  # Of positions, gaps and pressures
 
 

@@ -31,8 +31,6 @@ from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import PointState, measured
 from stribeck.solver.solve import hertz_solution
 
-__all__ = ["Neighbours", "Observed"]
-
 MAX_LOG_DISTANCE = math.log(30.0)  # A state farther than this in the logarithm of any number is no useful start
 
 

@@ -27,20 +27,6 @@ from stribeck.quantities.outputs import (
     friction_rows,
 )
 
-__all__ = [
-    "about_problem",
-    "absolute_error",
-    "columns_of_states",
-    "constant_groups",
-    "input_attributes",
-    "main_rows",
-    "numbers_of",
-    "problem_attributes",
-    "report_rows",
-    "si_films",
-    "units_of_inputs",
-]
-
 UNSTATED = (math.nan, "", "")  # Of a state that has no such number, or knows no error of it
 
 HERTZ_SIGNS = {"gap": " u_Hz", "width": " a", "pressure": " p_Hz"}  # Behind a number in Hertz units

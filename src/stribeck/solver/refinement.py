@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.enriched import FineOperators
 from stribeck.equations.error_estimate import ErrorEstimate, error_estimate
-from stribeck.equations.line import Operators
 from stribeck.equations.mesh_choice import halvings_for, mesh_for
 from stribeck.equations.observables import Observables, observables
+from stribeck.equations.operators import Operators
 from stribeck.equations.state import Guess, State, solve_state
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import MeshTooLargeError

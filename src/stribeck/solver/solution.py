@@ -12,7 +12,7 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition, Friction, sliding_part
+from stribeck.contacts.friction import Definition, sliding_part
 from stribeck.contacts.groups import Groups
 from stribeck.equations.gap import gap_at
 from stribeck.equations.observables import Observables, drag_parts, real_area
@@ -26,8 +26,6 @@ from stribeck.solver.fields import Profile
 
 if TYPE_CHECKING:
     import xarray
-
-__all__ = ["Friction", "Profile", "Solution"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -4,8 +4,6 @@ from stribeck.contacts.groups import Groups
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.base_solution import BaseSolution
 
-__all__ = ["SolveError", "describe"]
-
 
 class SolveError(RuntimeError):
     """The solver did not reach the tolerance.

@@ -20,9 +20,8 @@ from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.drag import friction_scale
 from stribeck.equations.film import is_thinning
 from stribeck.equations.gap import gap_beside, minimum_gap
-from stribeck.equations.line import LOAD
 from stribeck.equations.observables import area_by_pressure
-from stribeck.equations.operators import Operators
+from stribeck.equations.operators import LOAD, Operators
 from stribeck.equations.state import State, unknowns_of
 from stribeck.equations.unsteady import Unsteady, swallowed, swallowed_up_to
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_between, root_find

@@ -1,5 +1,7 @@
 """What a stroke gives: friction and films over time, each with its error, and steady sliding beside it."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar

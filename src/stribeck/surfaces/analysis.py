@@ -3,6 +3,8 @@
 Each step is a function of its own: read, repair, detrend, spectrum, fit, contact law.
 """
 
+from __future__ import annotations
+
 import math
 import re
 from dataclasses import dataclass, field
@@ -24,8 +26,6 @@ from stribeck.surfaces.detrend import Form, Trend, detrended
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum, Window, power_spectrum
 from stribeck.surfaces.self_affine_fit import MAX_DEVIANCE_RATIO, Estimate, SelfAffineFit, fit_self_affine
 from stribeck.surfaces.topography import Topography
-
-__all__ = ["Surface", "analyse"]
 
 # Ends of a self-affine spectrum, as lengths of waves.
 WAVES = {"q0": "longest wavelength", "roll_off": "roll-off wavelength", "q1": "shortest wavelength"}

@@ -9,6 +9,8 @@ about the removed trend, without a filter of waves (ISO 25178-2, ISO 4287); the 
 zero on average for an isotropic surface, with a mean square of one over the number of modes.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from typing import Annotated
@@ -20,8 +22,6 @@ from stribeck.quantities.docstrings import Described
 from stribeck.quantities.formats import Number, format_si
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum
 from stribeck.surfaces.topography import Topography
-
-__all__ = ["Departures", "departure_notes", "departures", "height_numbers"]
 
 MIN_SIGNIFICANCE = 9.0  # ``n |A|^2`` above which a texture is not chance: exp(-9), once in 8000 isotropic surfaces
 

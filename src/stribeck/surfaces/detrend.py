@@ -1,5 +1,7 @@
 """Tilt and curvature of a scan: the form of the body, found by least squares and removed from its roughness."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Literal, get_args
@@ -11,8 +13,6 @@ from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.quantities.docstrings import Described
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.surfaces.topography import Topography
-
-__all__ = ["Form", "Trend", "detrended"]
 
 Trend = Literal["none", "mean", "tilt", "curvature"]
 TRENDS = get_args(Trend)

@@ -16,8 +16,6 @@ from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.text import MAX_FILE_BYTES, TEXT_ENDINGS, Spacing, mark_codes, read_text, spacing_of
 from stribeck.surfaces.topography import Topography
 
-__all__ = ["read_topography"]
-
 AMBIGUOUS_ENDINGS = (".dat", ".xyz")  # Endings of text files that binary files of instruments have too, as those of MetroPro
 
 # Formats of SurfaceTopography that begin with no mark of their own, so that other files pass for them

@@ -1,5 +1,7 @@
 """The isotropic power spectrum of measured heights, from a map or from a line."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from typing import Annotated, Literal
@@ -12,8 +14,6 @@ from stribeck.contact_laws.spectrum import SelfAffine, positive
 from stribeck.quantities.results import Shown
 from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.surfaces.topography import Topography
-
-__all__ = ["MeasuredSpectrum", "Window", "line_density", "line_shape", "power_spectrum"]
 
 Window = Literal["hann", "none"]
 

@@ -3,6 +3,8 @@
 Waves longer than a scan or shorter than a few of its points are not seen: an interval holds the values for all of them.
 """
 
+from __future__ import annotations
+
 import itertools
 import math
 from collections.abc import Callable, Iterable
@@ -18,9 +20,6 @@ from stribeck.quantities.docstrings import Described
 from stribeck.quantities.standard_errors import INTERVAL_95
 from stribeck.quantities.units import InputError, checked_kind
 from stribeck.surfaces.measured_spectrum import MIN_WAVES_IN_SCAN, MeasuredSpectrum, line_density, line_shape
-
-__all__ = ["Estimate", "FitParameters", "SelfAffineFit", "central_differences", "fit_self_affine"]
-
 
 # Wave numbers of the longest wave of the surface, over that of the scan; the last is as good as none at all
 LONGEST_WAVE_RATIOS = (1.0, 0.3, 0.1, 1e-3)

@@ -1,5 +1,7 @@
 """Several scans of one surface: their mean spectrum, the law of it, and intervals from their scatter."""
 
+from __future__ import annotations
+
 import math
 import os
 from collections.abc import Sequence
@@ -22,8 +24,6 @@ from stribeck.quantities.units import InputError, show
 from stribeck.surfaces.analysis import Surface, wavelength
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum
 from stribeck.surfaces.self_affine_fit import Estimate, SelfAffineFit, fit_self_affine
-
-__all__ = ["CombinedSurface", "combine", "surface_table", "write_surface_table"]
 
 # Numbers of the heights of each scan, whose mean is printed.
 HEIGHTS = ("scan_rms_height", "mean_deviation", "skewness", "kurtosis", "scan_rms_slope")

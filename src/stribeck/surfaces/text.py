@@ -30,8 +30,6 @@ from stribeck.quantities.units import MAX_NUMBER, InputError, show, to_si
 from stribeck.surfaces.text_header import Header, header_of, unit_of
 from stribeck.surfaces.topography import MIN_POINTS, Topography, check_missing
 
-__all__ = ["TEXT_ENDINGS", "Spacing", "mark_codes", "read_text", "spacing_of"]
-
 Spacing = str | float | Sequence[str | float] | None
 """The distance between points as it is given: one for all axes, or one each."""
 

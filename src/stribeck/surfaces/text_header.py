@@ -9,8 +9,6 @@ from pathlib import Path
 from stribeck.files.cells import THOUSANDS, decimal_of
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["Header", "header_of", "unit_of", "unit_symbol"]
-
 _WORDS = {
     "micrometer": "um",
     "micrometre": "um",

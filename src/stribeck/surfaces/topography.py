@@ -13,8 +13,6 @@ from stribeck._types import Array, Flags
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum, positive, table_of
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["Topography", "synthetic_topography"]
-
 MIN_POINTS = {1: 64, 2: 32}  # Fewest points along a line and along each side of a map, for a spectrum of a decade
 
 MAX_MISSING_SHARE = 0.1  # Largest share of missing points that is filled

@@ -1,5 +1,7 @@
 """Sweep files: TOML that says what varies becomes a checked design, all states of which are possible."""
 
+from __future__ import annotations
+
 import hashlib
 import json
 import math

@@ -1,5 +1,7 @@
 """Propagated errors of a state: medians, intervals, the probability of each regime, and the share of each input."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Annotated, Any
 

@@ -13,6 +13,8 @@ elements in v; beyond, where :math:`1 - r^2 < 10^{-16}`, nothing is left.
 Source: ours, as [BP] Appendix C and D for the line; theory.md, section 11.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -7,6 +7,8 @@ Source: ours, on the inlet of J. H. Snoeijer, J. Eggers and C. H. Venner, Phys. 
 section 11.
 """
 
+from __future__ import annotations
+
 import math
 from functools import partial
 

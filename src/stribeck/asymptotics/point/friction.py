@@ -6,6 +6,8 @@ that of a film of this thickness, the shear is smaller.  The published definitio
 Source: ours; theory.md, section 11.
 """
 
+from __future__ import annotations
+
 import math
 from functools import partial
 

@@ -3,6 +3,8 @@
 Source: Hertz (1882); K. L. Johnson, Contact Mechanics (1985), Section 3.4.
 """
 
+from __future__ import annotations
+
 import math
 from functools import partial
 

@@ -17,6 +17,8 @@ depends on
 Source: facts of theory.md, section 11; the authors' names stand with each.
 """
 
+from __future__ import annotations
+
 import math
 from functools import partial
 

@@ -5,6 +5,8 @@ The edge is that of the line with :math:`\pi\kappa/4` for :math:`\kappa` (:mod:`
 Source: ours; theory.md, section 11.
 """
 
+from __future__ import annotations
+
 import math
 from functools import partial
 

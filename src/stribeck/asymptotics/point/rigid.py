@@ -7,6 +7,8 @@ Source: ours; the literature has the lift as :math:`0.416 \, \eta^2 V^2 R^{5/2} 
 V = 2 U in Reynolds' equation; theory.md, section 11.
 """
 
+from __future__ import annotations
+
 import math
 from functools import partial
 

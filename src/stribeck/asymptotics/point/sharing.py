@@ -6,6 +6,8 @@ the film is a horseshoe, :math:`h = \kappa H (1 - y^2)^q` with a fitted q, whose
 Source: ours; theory.md, section 11.
 """
 
+from __future__ import annotations
+
 import math
 from functools import cache
 

@@ -23,8 +23,6 @@ from stribeck.numerics.settings import NEGLIGIBLE, SAFETY
 from stribeck.numerics.trace import Value
 from stribeck.quantities.lazy import cached_property
 
-__all__ = ["CavitatedEquations"]
-
 
 @dataclass(frozen=True, eq=False)
 class CavitatedEquations(CavitatedSystem):

@@ -26,8 +26,6 @@ from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.numerics.settings import NEGLIGIBLE, SAFETY
 from stribeck.quantities.lazy import cached_property
 
-__all__ = ["ReformingEquations", "outflow"]
-
 
 def edge_of(cavitated: Flags) -> Flags:
     """Return the cavitated nodes beside one with a film."""

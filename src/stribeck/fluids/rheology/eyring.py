@@ -12,8 +12,6 @@ import numpy as np
 from stribeck.fluids.laws import FilmUnits, RateLaw
 from stribeck.quantities.schema import Input, law
 
-__all__ = ["Eyring"]
-
 
 @law
 class Eyring(RateLaw):

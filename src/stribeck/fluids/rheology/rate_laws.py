@@ -25,8 +25,6 @@ from stribeck.fluids.rheology.tabulated import EXPONENT, MIN_EXPONENT, RELAXATIO
 from stribeck.quantities.schema import Input, law
 from stribeck.quantities.units import InputError
 
-__all__ = ["Carreau", "Cross", "PowerLaw"]
-
 # Shear rate times relaxation time below which a power law has its plateau: without one, its drag has no bound for n <= 1/2.
 PLATEAU_RATE = 1e-8
 

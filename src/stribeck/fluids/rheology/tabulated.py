@@ -16,8 +16,6 @@ from stribeck.numerics.dual import with_slope
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.schema import Input
 
-__all__ = ["EXPONENT", "MIN_EXPONENT", "RELAXATION_TIME", "table_of"]
-
 MIN_EXPONENT = 0.05  # Least exponent of a shear-thinning fluid; below it the stress is nearly that of a plastic solid.
 
 RELAXATION_TIME = Input(

@@ -19,8 +19,6 @@ from stribeck.fluids.laws import DensityLaw, FilmUnits, ViscosityLaw
 from stribeck.quantities.schema import Input, law
 from stribeck.quantities.units import InputError
 
-__all__ = ["MAX_PRESSURE_EXPONENT", "Barus", "Constant", "DowsonHigginson", "Incompressible", "Roelands", "check_range"]
-
 MAX_PRESSURE_EXPONENT = 5.0  # Pressure coefficient times Hertz pressure above which the pressure has the spike of hard EHL.
 
 REFERENCE_PRESSURE = 1.96e8  # p_r of Roelands' law [Pa].

@@ -30,8 +30,6 @@ from stribeck.numerics.settings import (
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 
-__all__ = ["HermitePath", "Knot"]
-
 
 @dataclass(frozen=True, eq=False)
 class Knot:

@@ -13,8 +13,8 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.equations.enriched import FineOperators
 from stribeck.equations.error_estimate import gap_is_resolved
-from stribeck.equations.line import Operators
 from stribeck.equations.observables import ROW, area_of_state
+from stribeck.equations.operators import Operators
 from stribeck.equations.sensitivity import Change, log_derivatives
 from stribeck.equations.state import Guess, State, extrapolate, solve_state
 from stribeck.fluids.fluid import Cavitation
@@ -27,8 +27,6 @@ from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_f
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import finish, solved_point, stated_errors
 from stribeck.solver.solve_error import SolveError
-
-__all__ = ["LineSteps"]
 
 
 class LineSteps:

@@ -20,8 +20,6 @@ from stribeck.numerics.settings import (
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import Level
 
-__all__ = ["Pair", "gap_tails", "modal_amplitudes", "pair_of", "without_tolerance"]
-
 # Observables that rtol does not limit in cavitated films: streaks of the wake, and the moment of a thin contact whose panels
 # the rupture line crosses, are less accurate than the film.
 LOOSE_OBSERVABLES = ("J_couette", "J_balanced", "J_published", "J_pcx", "central_pressure")

@@ -25,8 +25,6 @@ from stribeck.solver.point.sensitivity import changes_along, measured_change
 from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import PointState, measured
 
-__all__ = ["BallKnots", "KnotState"]
-
 UNIT_SCALED = ("contact_load_share", "fluid_load_share", "minimum_angle", AREA)  # Observables whose errors are absolute
 COLUMNS = (*OBSERVABLES, *WITHIN, AREA)
 SHARES = (OBSERVABLES.index("contact_load_share"), OBSERVABLES.index("fluid_load_share"))

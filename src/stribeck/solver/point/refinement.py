@@ -50,16 +50,6 @@ from stribeck.solver.point.estimate import Pair, gap_tails, modal_amplitudes, pa
 from stribeck.solver.point.level import PROBLEMS, Level, solve_level, transfer
 from stribeck.solver.refinement import newton_tolerance
 
-__all__ = [
-    "follow",
-    "follow_reforming",
-    "full_model",
-    "holds",
-    "is_cavitated",
-    "refine",
-    "refine_reforming",
-]
-
 
 def holds(pair: Pair, rtol: float) -> bool:
     """Return whether the errors of a state hold a tolerance, and that of its minimum film a multiple of it."""

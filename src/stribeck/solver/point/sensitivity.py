@@ -27,8 +27,6 @@ from stribeck.quantities.outputs import GROUPS
 from stribeck.solver.point.estimate import Pair
 from stribeck.solver.point.state import PointState
 
-__all__ = ["changes_along", "derivatives_along", "measured_change", "state_derivatives"]
-
 Direction = tuple[Groups, Groups, float]
 """Groups, with their model, behind and ahead of a state along a logarithm, and the distance of both."""
 

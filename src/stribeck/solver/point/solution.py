@@ -38,8 +38,6 @@ from stribeck.solver.solve_error import SolveError, describe
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["Field", "PointSolution", "finish_point", "solution_of"]
-
 MAX_POINTS = math.isqrt(MAX_BYTES // (3 * 8))  # Points along a side of a dataset, whose fields take as much memory as a mesh
 WAKE_NOTE = (
     "The film ends at ambient pressure; streaks of liquid that touch both walls fill the part h_e/h of the wake. A dry wake "
