@@ -101,6 +101,15 @@ def first_missing(shown, output):
     return ""
 
 
+def test_the_code_of_a_page_runs_in_one_folder(subtests):
+    """A file that is there is kept, so that no two commands or blocks of a page may write the same."""
+    written = {"console": r"(?:-o|--out|--plot|--export) (\S+)", "python": r'\.(?:to_\w+|plot)\("([^"]+)"'}
+    for page in PAGES:
+        with subtests.test(page=page.name):
+            code = [part for kind, text in FENCE.findall(TEXT[page]) for part in re.findall(written.get(kind, "$^"), text)]
+            assert [name for name in code if code.count(name) > 1 and not name.endswith(".sqlite")] == []
+
+
 def test_links_lead_somewhere(subtests):
     for page in PAGES:
         with subtests.test(page=page):
@@ -193,6 +202,20 @@ def test_the_table_of_symbols_names_every_observable():
     state = sb.solve(sb.Groups(speed=0.0, load=0.1, roughness=0.0))
     inputs = {"message", "nodes"}
     assert set(state.to_dict()) - inputs - set(names_in_tables()) == set()
+
+
+def test_the_code_of_a_page_imports_what_the_reference_has():
+    """Those who extend the package import more."""
+    reference = (ROOT / "docs" / "api.rst").read_text()
+    imports = [
+        f"{module}.{name.split()[0]}"
+        for page in PAGES
+        if page.stem != "for_developers"
+        for module, names in re.findall(r"^from stribeck\.(\S+) import (.+)$", TEXT[page], re.M)
+        for name in names.split(",")
+    ]
+    assert imports
+    assert [name for name in imports if not re.search(rf"^   {re.escape(name)}$", reference, re.M)] == []
 
 
 def test_the_shown_formulas_are_numbered_as_docstrings_cite_them():
