@@ -197,6 +197,22 @@ def test_a_reversed_shape_is_its_mirror_image():
     assert turned.minimum_gap == pytest.approx(mirrored.minimum_gap, rel=1e-12)
 
 
+def test_a_body_with_grooves_is_not_reversed_by_itself():
+    """Its grooves took it as if it were not reversed: friction of a lip was that of the other direction, 0.18 for 0.12."""
+    grooves = {"groove_depth": "0.2 um", "groove_pitch": "30 um", "grooved_width": "0.4 mm"}
+    lip, oil_first = sb.profiles.Lip("45 deg", "25 deg", "50 um"), sb.profiles.Lip("25 deg", "45 deg", "50 um")
+    mirrored, turned = (
+        sb.profiles.dry_contact(each, 200.0, 1e7)
+        for each in (
+            sb.profiles.Grooved(None, body=oil_first, **grooves),
+            sb.profiles.Grooved(None, body=lip, reversed=True, **grooves),
+        )
+    )
+    assert (turned.left_edge, turned.right_edge) == pytest.approx((mirrored.left_edge, mirrored.right_edge))
+    with pytest.raises(sb.InputError, match="give reversed = True to the grooves"):
+        sb.profiles.Grooved(None, body=replace(lip, reversed=True), **grooves)
+
+
 def test_what_is_made_for_the_parabola_refuses_a_shape():
     state = solved(1e-3, WORN, "none", 1e-6).groups
     assert "profile" in repr(state.model)

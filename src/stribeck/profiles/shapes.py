@@ -125,10 +125,11 @@ class Grooved(Shape):
     reversed: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse a base that is no shape, or is given beside a radius."""
+        """Refuse a base that is no shape, is given beside a radius, or is reversed by itself."""
         if (self.body is None) == (self.base_radius is None):
             raise InputError("grooves are cut into one body: give base_radius, that of a cylinder, or body, another shape.")
-        _ = as_profile(self._under_grooves)
+        if getattr(as_profile(self._under_grooves), "reversed", False):
+            raise InputError(f"body = {self.body!r}: give reversed = True to the grooves, with which their body turns.")
 
     @property
     def _under_grooves(self) -> Profile:
