@@ -120,6 +120,7 @@ def new_figure(
     top: float = 0.6,
     left: float = 0.8,
     right: float = 0.25,
+    between: float = 0.2,
 ) -> tuple[Figure, list[Axes]]:
     """Return an empty figure in house style, with title, caption of :func:`caption_lines` and axes, between margins in inches.
 
@@ -135,7 +136,7 @@ def new_figure(
     low = (CAPTION_LINE_INCH * len(caption) + LEGEND_INCH + 0.72) / height
     high = 1 - top / height
     grid = figure.add_gridspec(
-        rows, columns, left=left / width, right=1 - right / width, bottom=low, top=high, wspace=0.2, hspace=0.08
+        rows, columns, left=left / width, right=1 - right / width, bottom=low, top=high, wspace=between, hspace=0.08
     )
     axes = [figure.add_subplot(grid[i, j]) for i in range(rows) for j in range(columns)]
     for ax in axes:

@@ -1,7 +1,7 @@
 """Picture of a surface: its heights, its spectrum with the fit, and the contact law that follows."""
 
 import math
-from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -15,67 +15,30 @@ MAX_PIXELS = 1024  # Most points along a side of the map that is drawn
 
 
 @style.picture()
-def plot_surface(surface: Surface, *, ax: Axes | None = None, title: str = "", notes: bool = True) -> Figure:
-    """Draw the heights of a surface, its spectrum with the fit, and its contact law.
+def plot_surface(surface: Surface | CombinedSurface, *, ax: Axes | None = None, title: str = "", notes: bool = True) -> Figure:
+    """Draw the heights of a scan, or the spectra of several, the spectrum with the fit, and the contact law.
 
     Parameters
     ----------
     title : str
-        Headline; the name of the file by default.
+        Headline; the name of the file, or the number of scans, by default.
     """
-    footer, said = [_caption(surface)], surface.notes if notes else ()
-    headline = title or surface.topography.source
-    figure, (heights, *others) = new_figure((14.0, 4.4), footer, said, title=headline, columns=3, right=0.7, ax=ax)
-    _spread([heights, *others] if others else [])
-    _draw_heights(figure, heights, surface)
-    for axes, draw in zip(others, (_draw_spectrum, _draw_law), strict=False):
-        draw(axes, surface)
-    if others:
-        style.add_legend(figure, others, columns=6)
+    if isinstance(surface, Surface):
+        width, panels, headline = 14.0, [_draw_heights, _draw_spectrum, _draw_law], surface.source
+    else:
+        width, panels, headline = 10.0, [_draw_spectra, _draw_law], f"{len(surface.surfaces)} scans of one surface"
+    footer, said, columns = [_caption(surface)], surface.notes if notes else (), len(panels)
+    size = (width, 4.4)
+    figure, axes = new_figure(size, footer, said, title=title or headline, columns=columns, right=0.7, between=0.42, ax=ax)
+    for place, draw in zip(axes, panels, strict=False):
+        draw(place, surface)
+    named = [each for each in axes if each.get_legend_handles_labels()[1]]  # heights are not
+    if named:
+        style.add_legend(figure, named, columns=2 * columns, inside=ax)
     return figure
 
 
-@style.picture()
-def plot_combined_surface(surface: CombinedSurface, *, ax: Axes | None = None, title: str = "", notes: bool = True) -> Figure:
-    """Draw the spectra of several scans, their mean with the fit, and the contact law.
-
-    Parameters
-    ----------
-    title : str
-        Headline; the number of scans by default.
-    """
-    r, error = surface, format_error(surface.fit.errors["h_rms"], "length")
-    footer = [
-        rf"$h_\mathrm{{rms}}$ = {format_si(r.roughness.h_rms, 'length')} $\pm$ {error}",
-        rf"$\alpha$ = {r.alpha.value:.3f} ({r.alpha.interval})",
-        rf"$\beta$ = {r.beta.value:.3g} ({r.beta.interval})",
-        style.program(),
-    ]
-    headline = title or f"{len(surface.surfaces)} scans of one surface"
-    figure, (spectrum, *others) = new_figure(
-        (10.0, 4.4), [footer], surface.notes if notes else (), title=headline, columns=2, right=0.7, ax=ax
-    )
-    _spread([spectrum, *others] if others else [])
-    for each in surface.surfaces:
-        good = each.measured.reliable
-        label = "each scan" if each is surface.surfaces[0] else None
-        spectrum.plot(each.measured.wavenumber[good], each.measured.density[good], color=GREY, lw=0.6, label=label)
-    for axes, draw in zip([spectrum, *others], (_draw_spectrum, _draw_law), strict=False):
-        draw(axes, surface)
-    style.add_legend(figure, [spectrum, *others], inside=not others)
-    return figure
-
-
-def _spread(panels: Sequence[Axes]) -> None:
-    """Leave room between panels for the labels of a second axis."""
-    for axes in panels:
-        grid = axes.get_subplotspec()
-        assert grid is not None
-        grid.get_gridspec().update(wspace=0.42)  # type: ignore[attr-defined]
-        axes.set_position(grid.get_position(style.figure_of(axes)))  # which only figures of pyplot follow by themselves
-
-
-def _draw_heights(figure: Figure, axes: Axes, surface: Surface) -> None:
+def _draw_heights(axes: Axes, surface: Any) -> None:
     z = surface.topography.heights
     factor, unit = readable_unit("length", max(surface.topography.size))
     height, height_unit = readable_unit("length", float(np.abs(z).max()))
@@ -100,7 +63,15 @@ def _draw_heights(figure: Figure, axes: Axes, surface: Surface) -> None:
     )
     axes.set_ylabel(f"$y$ ({unit})")
     axes.set_title(f"Height, form removed ({height_unit})", size=10, color=GREY, loc="left")
-    figure.colorbar(image, ax=axes, fraction=0.046, pad=0.03)
+    style.figure_of(axes).colorbar(image, ax=axes, fraction=0.046, pad=0.03)
+
+
+def _draw_spectra(axes: Axes, surface: Any) -> None:
+    for k, measured in enumerate(each.measured for each in surface.surfaces):
+        good = measured.reliable
+        label = "" if k else "each scan"
+        axes.plot(measured.wavenumber[good], measured.density[good], color=GREY, lw=0.6, label=label)
+    _draw_spectrum(axes, surface)
 
 
 def _draw_spectrum(axes: Axes, surface: Surface | CombinedSurface) -> None:
@@ -155,19 +126,14 @@ def _draw_law(axes: Axes, surface: Surface | CombinedSurface) -> None:
     axes.set_title("Contact law", size=10, color=GREY, loc="left")
 
 
-def _caption(surface: Surface) -> list[str]:
+def _caption(surface: Surface | CombinedSurface) -> list[str]:
     """Return what was found, for the caption."""
-    found, (alpha, beta) = surface.to_dict(), surface.limits
-    parts = [
-        rf"$h_\mathrm{{rms}}$ = {format_si(found['h_rms'], 'length')} $\pm$ {format_error(found['h_rms_error'], 'length')}",
-        rf"$H$ = {found['hurst']:.3f} $\pm$ {found['hurst_error']:.2g}",
-        rf"$\alpha$ = {alpha.value:.3f} ({alpha.interval})",
-        rf"$\beta$ = {beta.value:.3g} ({beta.interval})",
-        f"rms slope {found['rms_slope']:.3g}",
-        f"window {surface.window}",
-        f"trend {surface.shape.trend}",
-        style.program(),
-    ]
-    if math.isfinite(found["body_radius"]):
-        parts.insert(4, f"radius of the body {format_si(found['body_radius'], 'length')}")
-    return parts
+    r, errors, (alpha, beta) = surface.roughness, surface.fit.errors, surface.limits
+    height = rf"$h_\mathrm{{rms}}$ = {format_si(r.h_rms, 'length')} $\pm$ {format_error(errors['h_rms'], 'length')}"
+    law = [rf"$\alpha$ = {alpha.value:.3f} ({alpha.interval})", rf"$\beta$ = {beta.value:.3g} ({beta.interval})"]
+    if not isinstance(surface, Surface):
+        return [height, *law, style.program()]
+    radius = surface.shape.radius
+    body = "" if radius is None else f"radius of the body {format_si(radius, 'length')}"
+    of_scan = [f"rms slope {r.spectrum.rms_slope:.3g}", f"window {surface.window}", f"trend {surface.shape.trend}"]
+    return [height, rf"$H$ = {r.hurst:.3f} $\pm$ {errors['hurst']:.2g}", *law, body, *of_scan, style.program()]

@@ -35,11 +35,40 @@ HEIGHT_RATIO_NOTE = 1.3  # Ratio of the rms heights of scan and fit from which a
 REPAIR_NOTE = 0.05  # Relative change of the rms height of the scan by the repair of spikes from which a note warns
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Surface(Exported, Told):
-    """What a scan says of a surface; its dataset has its numbers in SI units, each with its error or interval."""
+class FittedSurface(Exported, Told):
+    """What one scan says of a surface, or several together."""
 
     _picture = "stribeck.plot.surface.plot_surface"
+
+    fit: SelfAffineFit
+    gamma: float
+    limits: Any  # The numbers alpha and beta of the contact law with their 95 % intervals
+
+    @property
+    def roughness(self) -> SelfAffine:
+        """The fitted spectrum."""
+        return self.fit.roughness
+
+    @cached_property
+    def law(self) -> PerssonLaw:
+        """Persson's contact law of the fitted spectrum, tabulated on first use."""
+        return persson_law(self.roughness, self.gamma)
+
+    @property
+    def _of_law(self) -> tuple[Number, Number, Number]:
+        """The numbers of the contact law."""
+        words = {"alpha": "decay of the contact law, alpha", "beta": "scale of the contact law, beta"}
+        alpha, beta = (
+            Number(name, f"{name} by Persson's theory", meaning, found.value, interval=(found.low, found.high))
+            for (name, meaning), found in zip(words.items(), self.limits, strict=True)
+        )
+        gamma = "reduction of the elastic energy in Persson's theory"
+        return alpha, beta, Number("gamma", "gamma of that theory", gamma, self.gamma, 0.0)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Surface(FittedSurface):
+    """What a scan says of a surface; its dataset has its numbers in SI units, each with its error or interval."""
 
     topography: Annotated[Topography, "roughness that was evaluated: filled, and without its trend"]
     shape: Annotated[Form, "the trend, with the radius of the body"]
@@ -67,11 +96,6 @@ class Surface(Exported, Told):
         """The numbers alpha and beta of the contact law with their 95 % intervals."""
         return self.fit.exponential_limit(self.gamma)
 
-    @property
-    def roughness(self) -> SelfAffine:
-        """The fitted spectrum."""
-        return self.fit.roughness
-
     @cached_property
     def spectrum(self) -> Spectrum:
         """The measured spectrum of the surface; where longer waves are not reliable, and of a line, by that of the fit."""
@@ -89,18 +113,13 @@ class Surface(Exported, Told):
         return Spectrum(q, density)
 
     @cached_property
-    def law(self) -> PerssonLaw:
-        """Persson's contact law of the fitted spectrum, tabulated on first use."""
-        return persson_law(self.roughness, self.gamma)
-
-    @cached_property
     def numbers(self) -> tuple[Number, ...]:
         """Every number of the surface with its unit, meaning and error, in the order of reports."""
         r, fitted, spectrum = self.roughness, self.fit.errors, self.roughness.spectrum
         texture, spikes, letter = self.departures, self.spikes, "R" if self.topography.is_line else "S"
         radius, radius_error = self.shape.radius, self.shape.radius_error(r, self.topography)
         convex = "convex" if self.shape.curvatures and self.shape.curvatures[0] < 0 else "concave"
-        alpha, beta = self.limits
+        alpha, beta, gamma = self._of_law
         measured = exponential_limit(self.spectrum, self.gamma)
         with_spikes = f"rms height with {spikes} spike{'s' * (spikes > 1)}" if spikes else ""
         seen = [name for name in WAVES if name != "roll_off" or name in self.fit.found]
@@ -128,14 +147,12 @@ class Surface(Exported, Told):
             Number("rms_slope", "rms slope, grows with finer sampling", "rms slope", spectrum.rms_slope),
             Number("rms_curvature", "rms curvature, grows too", "rms curvature", spectrum.rms_curvature, unit="m-1",
                    dimension="wavenumber"),
-            Number("alpha", "alpha by Persson's theory", "decay of the contact law, alpha", alpha.value,
-                   interval=(alpha.low, alpha.high)),
+            alpha,
             Number("measured_alpha", "  from the measured spectrum", "alpha from the measured spectrum", measured[0]),
-            Number("beta", "beta by Persson's theory", "scale of the contact law, beta", beta.value,
-                   interval=(beta.low, beta.high)),
+            beta,
             Number("measured_beta", "  from that spectrum", "beta from the measured spectrum", measured[1]),
             _length("measured_rms_height", "", "rms height of the measured spectrum", self.spectrum.rms_height),
-            Number("gamma", "gamma of that theory", "reduction of the elastic energy in Persson's theory", self.gamma, 0.0),
+            gamma,
             Number("noise_density", "", "density of the noise in the spectrum", self.fit.noise, unit=density),
             Number("deviance", "", "deviance of the fit", float(self.fit.deviance)),
         )  # fmt: skip

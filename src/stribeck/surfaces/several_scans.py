@@ -11,17 +11,16 @@ from typing import Annotated, Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.persson import PerssonLaw, exponential_limit, persson_law
-from stribeck.contact_laws.spectrum import SelfAffine
+from stribeck.contact_laws.persson import exponential_limit
 from stribeck.files.datasets import number_columns, units_of
-from stribeck.files.results import Exported, Labelled
+from stribeck.files.results import Labelled
 from stribeck.files.writing import atomic_write
 from stribeck.quantities.formats import Number, format_percent, format_si, plain_numbers
 from stribeck.quantities.lazy import cached_property
-from stribeck.quantities.results import Card, Told
+from stribeck.quantities.results import Card
 from stribeck.quantities.standard_errors import INTERVAL_95
 from stribeck.quantities.units import InputError, show
-from stribeck.surfaces.analysis import Surface, wavelength
+from stribeck.surfaces.analysis import FittedSurface, Surface, wavelength
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum
 from stribeck.surfaces.self_affine_fit import Estimate, SelfAffineFit, fit_self_affine
 
@@ -32,10 +31,8 @@ SAME_RING = 1e-9  # Relative difference of two wave numbers that are the same ri
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class CombinedSurface(Exported, Told):
+class CombinedSurface(FittedSurface):
     """What several scans say of one surface; its dataset has its numbers in SI units, each with its interval."""
-
-    _picture = "stribeck.plot.surface.plot_combined_surface"
 
     surfaces: Annotated[tuple[Surface, ...], "the scans, each by itself"]
     measured: Annotated[MeasuredSpectrum, "mean spectrum of all scans"]
@@ -47,11 +44,6 @@ class CombinedSurface(Exported, Told):
     notes: Annotated[tuple[str, ...], "what must be known before the numbers are used"] = field(default=())
 
     @property
-    def roughness(self) -> SelfAffine:
-        """The fitted spectrum."""
-        return self.fit.roughness
-
-    @property
     def limits(self) -> tuple[Estimate, Estimate]:
         """The numbers alpha and beta of the contact law."""
         return self.alpha, self.beta
@@ -60,11 +52,6 @@ class CombinedSurface(Exported, Told):
     def source(self) -> str:
         """The scans in words."""
         return f"{len(self.surfaces)} scans ({', '.join(each.source for each in self.surfaces)})"
-
-    @cached_property
-    def law(self) -> PerssonLaw:
-        """Persson's contact law of the fitted spectrum, tabulated on first use."""
-        return persson_law(self.roughness, self.gamma)
 
     @property
     def inputs(self) -> dict[str, float]:
@@ -100,13 +87,7 @@ class CombinedSurface(Exported, Told):
                 shown = wavelength(name, value)
                 value, low, high = (2 * math.pi / end for end in (value, high, low))
             fitted.append(replace(shown, value=value, error=math.nan, interval=(low, high)))
-        labels = {"alpha": "decay of the contact law, alpha", "beta": "scale of the contact law, beta"}
-        law = [
-            Number(name, f"{name} by Persson's theory", meaning, found.value, interval=(found.low, found.high))
-            for (name, meaning), found in zip(labels.items(), self.limits, strict=True)
-        ]
-        rest = Number("gamma", "gamma of that theory", "reduction of the elastic energy in Persson's theory", self.gamma, 0.0)
-        return (*heights, *fitted, *law, rest)
+        return (*heights, *fitted, *self._of_law)
 
     def _card(self) -> Card:
         each = [{number.name: number for number in surface.numbers} for surface in self.surfaces]
