@@ -136,8 +136,8 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     scales_surface = "surface" in tables and not tables["surface"].get("shape_only", False)
     follows = scales_surface and "roughness" in known and "beta" not in known and not follows_surface(contact, known)
     try:
-        if follows:
-            known = with_proportional(known, "beta", "roughness")
+        if follows:  # so that [correlations] may name it
+            known |= {"beta": known["roughness"]}
         stated = StandardErrors(known, correlations)
         stated.correlations = known.correlations | stated.correlations
         if follows:  # what the height goes with, beta does
