@@ -646,7 +646,7 @@ def test_what_is_outside_the_model_stands_above_every_number(rested):
 def test_the_verdict_of_the_page_is_that_of_the_check_where_the_curve_leaves_the_range_of_the_law():
     shown = START.replace(boundary_friction=0.001)
     answer = Answerer()(shown)
-    assert answer.curve.doubtful.any()
+    assert answer.curve.found.law_in_doubt.any()
     said = {each.name: each.verdict for each in sb.check(shown.contact)}
     assert {each.name: each.verdict for each in answer.checks}.items() <= said.items()
 

@@ -31,7 +31,7 @@ from stribeck.contacts.parts import PART_INPUTS, PURE_SLIDING, Parts
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.docstrings import complete_docstring
 from stribeck.quantities.schema import Input, numbers_of
-from stribeck.quantities.units import InputError, checked_kind, checked_word, show
+from stribeck.quantities.units import InputError, checked_kind, checked_word, number_or_text, show
 
 Noise = Literal["relative", "absolute"]
 
@@ -427,7 +427,7 @@ def _liquid(fluid: Any) -> dict[str, Any]:
             raise InputError(f"fluid = {show(fluid)}; write a liquid and its conditions, as 'iso-vg grade=46'.")
         given: dict[str, Any] = {
             "preset": word,
-            **{key: _number_or_text(text) for key, text in (each.split("=", 1) for each in rest)},
+            **{key: number_or_text(text) for key, text in (each.split("=", 1) for each in rest)},
         }
     else:
         given = dict(checked_kind("fluid", fluid, Mapping, "text as 'iso-vg grade=46', or a mapping"))
@@ -438,11 +438,3 @@ def _liquid(fluid: Any) -> dict[str, Any]:
         )
     preset(**{key: value for key, value in given.items() if key != "preset"})  # refuses what it does not know
     return given
-
-
-def _number_or_text(text: str) -> float | str:
-    """Return text without a unit as the number that it is."""
-    try:
-        return float(text)
-    except ValueError:
-        return text

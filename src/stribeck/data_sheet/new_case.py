@@ -1,6 +1,7 @@
 """A new case file: every key with its unit, its usual range and where a value may come from."""
 
 import math
+from collections.abc import Iterable
 from importlib.resources import files
 
 from stribeck.cases.case import DEFAULT_POINTS_AND_RTOL, FACTS, MOTIONS
@@ -46,6 +47,12 @@ points = {points}
 rtol = {usual}
 # Which friction force: "balanced" (on the substrate) or "published" (as printed in the article).
 definition = "balanced"
+"""
+
+STROKE_TEXT = """
+# How the contact moves, for stribeck stroke; the checks take its length.
+# [stroke]
+{}
 """
 
 MIN_RTOL = {"line": "1e-11", "point": "1e-8"}  # By geometry
@@ -112,7 +119,7 @@ def new_case(geometry: Geometry = "line", seal: str | None = None) -> str:
     motion = {"slide_to_roll": table.kept.get("slide_to_roll", LAW_NUMBERS["slide_to_roll"])}
     for row in (table.kept | motion).values():
         left_out = row.optional or (geometry == "point" and row.name in INPUTS_OF_SURFACES)
-        lines += [*_about(row), f"{'# ' if left_out else ''}{row.name} = {row.example}"]
+        lines += [_about(row), f"{'# ' if left_out else ''}{row.name} = {row.example}"]
         for form in reversed(table.forms):
             if table.stands_for.get(form.inputs[0].name) != row.name:
                 continue
@@ -147,34 +154,32 @@ def _law(name: Law) -> str:
 
 def _parts() -> str:
     """Return the optional tables, with all laws that there are."""
-    lines = []
+    laws = []
     for kind in FLUID_KINDS.values():
-        first, *others = (name for name, law in kind.laws.items() if law is not None)
-        for name in (first, *others):
-            needed = _needed(kind.laws[name])
-            with_them = f"   # with {needed}" if needed else ""
-            lines.append(f'# {"" if name == first else "# or "}{kind.key} = "{name}"{with_them}')
+        needed = {name: _needed(law) for name, law in kind.laws.items() if law is not None}
+        said = (f'{kind.key} = "{name}"{f"   # with {numbers}" if numbers else ""}' for name, numbers in needed.items())
+        laws.append(_alternatives(said))
     factors = [f'"{name}"' for name, law in KINDS["flow_factors"].laws.items() if law is not None]
     bodies = [law for law in KINDS["solid"].laws.values() if law is not None]
     shapes = [(name, law) for name, law in KINDS["profile"].laws.items() if law is not None and needed_of(law)]
     return MODEL_TEXT.format(
         presets=", ".join(name for name in PRESETS if name != "water"),
-        laws="\n".join(lines),
+        laws="\n".join(laws),
         flow_factors=f"{factors[0]}   # or {' or '.join(factors[1:])}",
-        bodies="\n".join(f"# {'# or ' if law is not bodies[0] else ''}{_needed(law)}   # {law.label}" for law in bodies),
-        shapes="\n".join(
-            f'# {"# or " if k else ""}shape = "{name}"; {_needed(law)}   # {law.label}' for k, (name, law) in enumerate(shapes)
-        ),
+        bodies=_alternatives(f"{_needed(law)}   # {law.label}" for law in bodies),
+        shapes=_alternatives(f'shape = "{name}"; {_needed(law)}   # {law.label}' for name, law in shapes),
     )
 
 
 def _stroke() -> str:
     """Return the table of a stroke, with all motions."""
-    motions = [f'motion = "{name}"; {_needed(motion)}' for name, motion in MOTIONS.items() if _needed(motion)]
-    lines = [f"# {'# or ' if k else ''}{line}" for k, line in enumerate(motions)]
-    return "\n".join(
-        ["", "# How the contact moves, for stribeck stroke; the checks take its length.", "# [stroke]", *lines, ""]
-    )
+    needed = {name: _needed(motion) for name, motion in MOTIONS.items()}
+    return STROKE_TEXT.format(_alternatives(f'motion = "{name}"; {each}' for name, each in needed.items() if each))
+
+
+def _alternatives(lines: Iterable[str]) -> str:
+    """Return lines of which one is to be taken, all of them comments."""
+    return "\n".join(f"# {'# or ' if k else ''}{line}" for k, line in enumerate(lines))
 
 
 def _needed(law: type) -> str:
@@ -182,11 +187,11 @@ def _needed(law: type) -> str:
     return "; ".join(f"{key} = {numbers_of(law)[key].example}" for key in needed_of(law))
 
 
-def _about(row: Input) -> list[str]:
+def _about(row: Input) -> str:
     low, high = row.usual
     unit = DIMENSIONS[row.dimension].unit or "no unit"
     usual = f", usually {format_si(low, row.dimension)} to {format_si(high, row.dimension)}" if high < math.inf else ""
-    return [f"# {row.label[0].upper()}{row.label[1:]} [{unit}]{usual}. Here: {row.source}."]
+    return f"# {row.label[0].upper()}{row.label[1:]} [{unit}]{usual}. Here: {row.source}."
 
 
 def _values(rows: tuple[Input, ...]) -> str:

@@ -62,8 +62,8 @@ def friction_chart(answer: Answer) -> Options:
             floor = np.maximum(lower, 1e-3 * size[chosen])
             series.insert(0, area("spread", "95 % by errors of the inputs", (floor[there], upper[there]), x[there], along="y"))
         if not old:
-            if curve.doubtful.any():
-                series.append(_doubtful_stretches(x, curve.doubtful))
+            if curve.found.law_in_doubt.any():
+                series.append(_doubtful_stretches(x, curve.found.law_in_doubt))
             series.insert(0, _regime_bands(curve, answer.speeds, scale))  # which would cover the area
     for i, pin in enumerate(answer.pins):
         if pin.curve is not None:

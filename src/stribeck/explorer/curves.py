@@ -90,11 +90,6 @@ class Curve:
         """Its size: where the cylinder is the faster body the substrate is dragged along [-]."""
         return {definition: np.abs(np.asarray(friction.total)) for definition, friction in self.friction.items()}
 
-    @cached_property
-    def doubtful(self) -> Array:
-        """Where the contact law is outside its range."""
-        return self.found.law_in_doubt
-
     @property
     def source(self) -> str:
         """Where it comes from, with its error."""

@@ -31,7 +31,7 @@ def plot_fit(fit: Fit, *, ax: Axes | None = None, title: str = "", notes: bool =
     figure, (above, *others) = new_figure((8.5, 6.2), *caption, rows=2, title=title or "Fit to measured friction", ax=ax)
     bars: Any = fit._minimum.objective.sigma
     bars = None if bars is None else bars * (data.friction if fit.logarithmic else 1.0)
-    styles = _draw_measured(above, data, bars)
+    styles = draw_points(above, data, data.values, bars)
     for k, form in enumerate(styles):
         rows = data.curve == k
         colour = form["color"]
@@ -61,15 +61,10 @@ def plot_measurements(data: Measurements, *, ax: Axes | None = None, title: str 
     if not len(data):
         raise InputError("there are no rows, so that there is nothing to draw.")
     figure, (ax,) = new_figure((7.5, 4.6), [], title=title or "Measured friction", ax=ax)
-    _draw_measured(ax, data, data.error)
+    draw_points(ax, data, data.values, data.error)
     ax.set_xlabel(LABELS[data.abscissa])
     add_legend(figure, [ax], inside=True)
     return figure
-
-
-def _draw_measured(axes: Axes, data: Measurements, bars: Any) -> list[dict[str, Any]]:
-    """Draw each measured curve over what it was measured against."""
-    return draw_points(axes, data, data.values, bars)
 
 
 def draw_points(axes: Axes, data: Measurements, values: Array, bars: Any) -> list[dict[str, Any]]:

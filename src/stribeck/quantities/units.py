@@ -178,6 +178,14 @@ def read_number(name: str, text: str) -> float:
         raise InputError(f"{name} = {show(text)} is not a number; write it as 0.001 or 1e-3.") from None
 
 
+def number_or_text(text: str) -> float | str:
+    """Return text without a unit as the number that it is."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
 def listed(words: Iterable[str], last: str = "and") -> str:
     """Return words as a sentence lists them: one, two and three."""
     *most, end = words

@@ -184,10 +184,12 @@ def combine(surfaces: Sequence[Surface]) -> CombinedSurface:
         raise InputError(f"gamma is {gammas[0]:g} of one surface and {gammas[-1]:g} of another; analyse all with the same.")
     measured, scatter = _mean_spectrum([each.measured for each in found])
     own = fit_self_affine(measured)
-    names = [name for name in own.errors if all(name in each.fit.errors for each in found)]
-    spread = {name: _half_width(_scaled(name, np.array([getattr(each.roughness, name) for each in found]))) for name in names}
-    errors = {name: _wider(name, float(getattr(own.roughness, name)), error, spread.get(name, 0.0))
-              for name, error in own.errors.items()}  # fmt: skip
+    errors = dict(own.errors)
+    for name in own.errors:
+        if all(name in each.fit.errors for each in found):
+            values = np.array([getattr(each.roughness, name) for each in found])
+            half = _half_width(values) if name == "hurst" else getattr(own.roughness, name) * _half_width(np.log(values))
+            errors[name] = max(errors[name], half / INTERVAL_95)
     gamma, notes = gammas[0], _notes(found, own)
     numbers = np.log([exponential_limit(each.roughness, gamma) for each in found]).T
     profile = replace(
@@ -238,21 +240,11 @@ def _mean_spectrum(spectra: Sequence[MeasuredSpectrum]) -> tuple[MeasuredSpectru
     )
 
 
-def _scaled(name: str, values: Array) -> Array:
-    """Return numbers as their scatter is counted: logarithms, but the Hurst exponent as it is."""
-    return values if name == "hurst" else np.log(values)
-
-
 def _half_width(values: Array) -> float:
     """Return half of the 95 % interval of the mean of a few numbers."""
     from scipy.stats import t  # here, as it takes a third of a second to import
 
     return float(t.ppf(0.975, values.size - 1) * values.std(ddof=1) / math.sqrt(values.size))
-
-
-def _wider(name: str, value: float, error: float, half_width: float) -> float:
-    """Return the larger of a standard error and of that of an interval by scatter."""
-    return max(error, half_width * (1.0 if name == "hurst" else value) / INTERVAL_95)
 
 
 def _ends(name: str, value: float, error: float) -> tuple[float, float]:

@@ -122,7 +122,8 @@ class Topography:
             spikes = _spikes(self.heights)
         notes = list(self.notes)
         if dead.any():
-            notes.append(f"{_count(dead)} without a height, filled from the neighbours.")
+            verb = "is" if self.missing == 1 else "are"
+            notes.append(f"{self.missing} of {dead.size} points {verb} without a height, filled from the neighbours.")
         if spikes.any():
             number = int(spikes.sum())
             what = "1 point is a spike" if number == 1 else f"{number} points are spikes"
@@ -199,11 +200,6 @@ def check_missing(heights: Array, source: str) -> None:
             f"{source}: {100 * share:.0f} % of the points are missing, more than "
             f"{100 * MAX_MISSING_SHARE:.0f} %; crop the scan to the measured area."
         )
-
-
-def _count(flags: Flags) -> str:
-    number = int(flags.sum())
-    return f"{number} of {flags.size} points {'is' if number == 1 else 'are'}"
 
 
 def _spikes(heights: Array) -> Flags:

@@ -28,7 +28,7 @@ from stribeck.explorer.inputs.typed import liquid_of, with_point
 from stribeck.fluids.fluid import Cavitation
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.schema import needed_of, numbers_of
-from stribeck.quantities.units import InputError, checked_word
+from stribeck.quantities.units import InputError, checked_word, number_or_text
 from stribeck.solver.point.solve import check_model
 
 
@@ -307,11 +307,8 @@ def _text(value: Any) -> str:
 
 
 def _number(key: str, text: str) -> float | str:
-    try:
-        found = float(text)
-    except ValueError:
-        return text
-    if not math.isfinite(found):
+    found = number_or_text(text)
+    if isinstance(found, float) and not math.isfinite(found):
         raise InputError(f"{key} = {text} is not a finite number; give one from 1e-300 to 1e300.")
     return found
 

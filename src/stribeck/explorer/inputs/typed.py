@@ -14,7 +14,7 @@ from stribeck.contacts.inputs import InputTable
 from stribeck.fluids.description import Liquid
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.schema import Input
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, number_or_text, show
 
 Entries = dict[str, str | float]
 
@@ -109,9 +109,8 @@ def _by_unit(rows: list[Input], part: str) -> tuple[Input, str] | None:
 
 def _plain(row: Input, text: str) -> str | float:
     """Return the value of a row from its text, a number without a unit as such."""
-    try:
-        number = float(text)
-    except ValueError:
+    number = number_or_text(text)
+    if isinstance(number, str):
         return text
     if row.dimension != "number":
         raise InputError(f"{row.name} = {show(text)} has no unit; write, for example, {row.typical}.")
