@@ -505,6 +505,20 @@ def test_charts_are_tables_and_sentences_too(open_page):
     assert len(cells) >= 9 and all(re.fullmatch(r"[0-9.]+ (nm|µm|mm)", each) for each in cells)
 
 
+def test_the_table_of_the_curve_has_the_band_of_its_picture(open_page):
+    page = open_page("speed=1e-3&boundary_friction=0.5%20%2B-%2020%20%25")
+    page.wait_for_function(f"({CHART})('friction').series.some(each => each.id === 'spread')")
+    page.get_by_role("button", name="As a table: Friction over speed").press("Enter")
+    head, *rows = page.eval_on_selector_all(
+        ".chart-friction tr", "rows => rows.map(row => [...row.children].map(cell => cell.innerText))"
+    )
+    contact = contact_of(page).contact
+    for speed, *_, ends in rows[:4]:
+        interval = sb.propagate(contact.replace(speed=float(speed)), {"boundary_friction": 0.2})["friction"].interval_95
+        assert [float(each) for each in ends.split(" to ")] == pytest.approx(interval, rel=0.05), speed
+    assert head[-1] == "95 % by errors of the inputs" and len(rows) >= 5
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_axe_core_finds_no_fault(open_page, scheme):
     from axe_playwright_python.sync_playwright import Axe

@@ -127,7 +127,7 @@ const StribeckChart = (() => {
     area(series, { brush, x, y, colour }) {
       brush.fillStyle = colour(series.colour);
       brush.beginPath();
-      for (const [one, two] of series.data) brush.lineTo(x(one), y(two));
+      for (const [one, two] of series.data) brush.lineTo(x(one), Math.min(y(two), 1e6)); // zero lies below a logarithmic axis
       brush.fill();
     },
     // Strips along the axis, hatched.
@@ -190,6 +190,8 @@ const StribeckChart = (() => {
 
   const isThere = ([across, up]) => Number.isFinite(across) && Number.isFinite(up);
   const isMark = ({ type, data }) => type === "line" && data.length === 2 && data[0][0] === data[1][0];
+  // An area between a lower and an upper end over the axis, and not between two places on it.
+  const isSpread = ({ type, quiet, data }) => type === "area" && !quiet && data[0]?.[0] !== data[1]?.[0];
   const linesOf = (series) => series.filter((each) => each.type === "line" && !each.quiet && !isMark(each));
 
   // What a line has at a place along the axis, between its two points there as it is drawn.
@@ -198,7 +200,7 @@ const StribeckChart = (() => {
     if (i < 1) return NaN;
     const [[from, low], [to, high]] = [data[i - 1], data[i]];
     const part = x.log ? Math.log(at / from) / Math.log(to / from) : (at - from) / (to - from);
-    return y.log ? low * (high / low) ** part : low + part * (high - low);
+    return y.log && low * high > 0 ? low * (high / low) ** part : low + part * (high - low);
   }
 
   // A place in a film, from the logarithms of one side of it.
@@ -216,10 +218,15 @@ const StribeckChart = (() => {
       const rows = labels(y).reverse().map((up) => [up, ...labels(x).map((at) => filmAt(film, part(x, at), part(y, up)))]);
       return [[`y below, x across (${x.unit})`, ...labels(x)], ...rows];
     }
-    const lines = linesOf(series), least = y.log ? 0 : 1e-4 * (y.high - y.low); // what lies between the nodes of a state is no truer
+    const least = y.log ? 0 : 1e-4 * (y.high - y.low); // what lies between the nodes of a state is no truer
     const number = (value) => (Number.isFinite(value) ? inWords(Math.abs(value) < least ? 0 : value) : "–");
-    const rows = labels(x).map((at) => [inWords(at), ...lines.map(({ data }) => number(valueAt(data, at, x, y)))]);
-    return [[x.name, ...lines.map(({ name }) => name)], ...rows];
+    const at = (place) => ({ type, data }) => {
+      const ends = type === "line" ? [data] : [data, [...data].reverse()];
+      return ends.map((each) => number(valueAt(each, place, x, y))).join(" to ").replace("– to –", "–");
+    };
+    const shown = [...linesOf(series), ...series.filter(isSpread)];
+    const rows = labels(x).map((place) => [inWords(place), ...shown.map(at(place))]);
+    return [[x.name, ...shown.map(({ name }) => name)], ...rows];
   }
 
   // The chart in a sentence.

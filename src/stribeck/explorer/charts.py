@@ -59,8 +59,7 @@ def friction_chart(answer: Answer) -> Options:
             lower, upper = curve.band.along(curve.speed, size[chosen])
             there = np.isfinite(lower)
             heights += [*_range(lower[lower > 0.1 * size[chosen]]), *_range(upper[there])]
-            floor = np.maximum(lower, 1e-3 * size[chosen])
-            series.insert(0, area("spread", "95 % by errors of the inputs", (floor[there], upper[there]), x[there], along="y"))
+            series.insert(0, area("spread", "95 % by errors of the inputs", (lower[there], upper[there]), x[there], along="y"))
         if not old:
             if curve.found.law_in_doubt.any():
                 series.append(_doubtful_stretches(x, curve.found.law_in_doubt))
