@@ -226,7 +226,7 @@ class FrictionWithin:
     """The friction integrals of a film up to a radius, less those of a fluid that does not thin far away."""
 
     mesh: PolarMesh  # The mesh
-    running: Array  # At the nodes: both parts up to there, and `-oint h p_f cos(theta) r`
+    running: Array  # At the nodes: both parts up to there, and how much the force on the ball is larger, with `J_pcx`
     finite: tuple[float, float, float]  # The finite parts of both, and what the third is of the far film
     outside_film: Any  # What the film beyond the rim has more than that
     offset: float  # Offset [u_Hz]
@@ -237,11 +237,11 @@ class FrictionWithin:
     def of(cls, equations: Equations, y: Unknowns, values: Mapping[str, float]) -> FrictionWithin:
         """Return the friction integrals of a state with these observables."""
         mesh, speed = equations.operators.mesh, equations.speed
-        up_to = _running(mesh, np.stack(on_rings(equations, y)))
-        around = (y.gap * y.fluid * np.cos(mesh.angles)[:, None]).sum(axis=0)
-        edge = -2.0 * np.pi / mesh.modes * mesh.scattered(around) * mesh.local_radii
+        around = (y.fluid * np.cos(mesh.angles)[:, None]).sum(axis=0)
+        moment = 2.0 * np.pi / mesh.modes * mesh.scattered(around) * mesh.local_radii**2
+        running = _running(mesh, np.stack([*on_rings(equations, y), moment]))
+        running[2] = values["J_pcx"] - 2.0 * running[1] - running[2]
         finite = values["J_couette"], values["J_poiseuille"], equations.far.poiseuille * speed
-        running = np.concatenate([up_to, edge[None]])
         return cls(mesh, running, finite, equations.outside_film, y.offset, speed, equations.far)
 
     def __call__(self, which: int, log_radius: float) -> float:
