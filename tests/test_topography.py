@@ -221,6 +221,17 @@ def test_an_uneven_line_is_interpolated_and_says_so(tmp_path):
     assert line.resolution == pytest.approx(8 * line.spacing[0])
 
 
+def test_a_line_keeps_its_step_where_rows_of_missing_points_are_left_out(tmp_path):
+    heights = np.random.default_rng(8).normal(size=300).cumsum()
+    kept = [i for i in range(300) if i != 7 and not 100 <= i < 115]
+    text = "x (um),z (nm)\n" + "".join(f"{0.15625 * i:.3f},{heights[i]:.3f}\n" for i in kept)
+    (tmp_path / "line.csv").write_text(text)
+    line = read_topography(tmp_path / "line.csv")
+    assert line.spacing == (pytest.approx(0.15625e-6, rel=1e-5),) and len(line.heights) == 300
+    assert np.flatnonzero(np.isnan(line.heights)).tolist() == [7, *range(100, 115)]
+    np.testing.assert_allclose(line.heights[kept], 1e-9 * heights[kept], atol=1e-12)
+
+
 def test_an_uneven_line_may_miss_as_much_as_a_map(tmp_path):
     x, rng = np.cumsum(np.random.default_rng(86).uniform(0.8, 1.2, 200)), np.random.default_rng(87)
     for missing, refused in ((20, False), (21, True)):

@@ -40,6 +40,8 @@ MISSING_CODES = {10.0**n - 1 for n in range(3, 8)} | {32767.0, 32768.0, 65535.0,
 
 MAX_GRID_DEVIATION = 0.02  # Largest deviation of a position from the even grid, over the spacing
 
+MOST_EMPTY = 4  # Points of a grid over those with a height from which the positions are no such grid
+
 SPACING_RTOL = 0.005  # Relative difference of spacings, one given and one in the file, up to which they agree: files round
 
 MAX_FILE_BYTES = 1_000_000_000
@@ -230,9 +232,12 @@ def _rounding(cells: list[str]) -> float:
     return float(max(10.0**-decimals, by_digits))
 
 
-def _even_grid(x: Array, rounding: float) -> tuple[float, float]:
-    """Return the step of the even grid nearest to rising positions, and how far they are off it beyond their rounding."""
-    count = np.arange(x.size)
+def _even_grid(x: Array, rounding: float, number: Array | None = None) -> tuple[float, float]:
+    """Return the step of the even grid nearest to rising positions, and how far they are off it beyond their rounding.
+
+    They are one after another unless their ``number`` on the grid is given.
+    """
+    count = np.arange(x.size) if number is None else number
     step, start = np.polyfit(count - count.mean(), x, 1)
     off = np.abs(x - start - step * (count - count.mean())).max()
     # A line through rounded positions may itself be off by a little of the rounding.
@@ -253,6 +258,13 @@ def _line(path: Path, x: Array, z: Array, table: _Table, rounding: float) -> Top
     if off <= MAX_GRID_DEVIATION * step:
         return Topography(z, (step,), source=path.name, notes=tuple(notes))
     check_missing(z, path.name)
+    # Points without a height may not be in the file; single steps are those nearer to the usual one than to two of it.
+    number = np.rint((x - x[0]) / steps[steps < 1.5 * np.median(steps)].mean())
+    step, off = _even_grid(x, rounding, number)
+    if off <= MAX_GRID_DEVIATION * step and np.all(np.diff(number) > 0) and number[-1] < MOST_EMPTY * x.size:
+        heights = np.full(int(number[-1]) + 1, np.nan)
+        heights[number.astype(int)] = z
+        return Topography(heights, (step,), source=path.name, notes=tuple(notes))
     widest, good = float(steps.max()), np.isfinite(z)
     count = int(round((x[-1] - x[0]) / widest)) + 1
     even = np.linspace(x[0], x[-1], count)
@@ -293,7 +305,7 @@ def _map(path: Path, places: Array, z: Array, table: _Table, rounding: list[floa
         index.append(nearest.astype(int))
         steps.append(step)
         shape.append(int(nearest.max()) + 1)
-    if shape[0] * shape[1] > 4 * z.size:
+    if shape[0] * shape[1] > MOST_EMPTY * z.size:
         raise InputError(
             f"{path}: {z.size} points on a grid of {shape[0]} x {shape[1]} leave most of the grid empty; check x and y."
         )
