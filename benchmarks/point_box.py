@@ -113,7 +113,8 @@ def judged(seed: int, number: int, rtol: float, largest: float = math.inf) -> di
     if exact is None:
         row["needs"] = row["needs"] if row["needs"] > largest else math.inf
     else:
-        ratios = {name: abs(state.values[name] - exact[name]) / error for name, error in state.absolute_errors.items()}
+        off = {name: abs(state.values[name] - exact[name]) for name in state.absolute_errors}
+        ratios = {name: off[name] / error if off[name] else 0.0 for name, error in state.absolute_errors.items()}
         kept = {name: ratio for name, ratio in ratios.items() if name not in MINIMA}
         row["worst"] = max(kept, key=kept.__getitem__)
         row["ratio"] = kept[row["worst"]]

@@ -206,7 +206,8 @@ def test_at_rest_heavy_balls_have_their_friction_and_no_films():
 
 @pytest.mark.parametrize("cavitation", ["none", pytest.param("exit", marks=pytest.mark.slow)])
 def test_fits_begin_on_it_where_it_holds(cavitation):
-    contact = ball(wetted_radius=3e-3, cavitation=cavitation)
+    ends = {} if cavitation == "exit" else {"wetted_radius": 3e-3}  # no table has the end of the liquid behind a rupture
+    contact = ball(cavitation=cavitation, **ends)
     speeds = (contact.speed / 3, contact.speed * 3)
     curve = sb.stribeck_curve(contact, speed=speeds, points=5, method="atlas")
     ones = np.zeros(5, dtype=int), ("a",), ({},), np.arange(2, 7)

@@ -39,7 +39,6 @@ from stribeck.numerics.settings import (
     BAND,
     GMRES_RTOL,
     HALF_DIGITS,
-    MAX_BAND,
     MAX_STEPS,
     NEGLIGIBLE,
     REBUILD_AT,
@@ -200,8 +199,9 @@ def iterate_cavitated(
             krylov += solved.steps
             if not np.isfinite(solved.x).all():
                 return ended(Outcome.SINGULAR)
-            if solved.left > NEGLIGIBLE and not (is_new and band == MAX_BAND):
-                band, kept = MAX_BAND if is_new else band, None
+            wider = kept.banded.wider_band
+            if solved.left > NEGLIGIBLE and not (is_new and wider is None):
+                band, kept = wider if is_new and wider is not None else band, None
                 continue
             step = linear.changes(solved.x, residual[0])
             part = longest_step(law, y.gap, step.gap)

@@ -23,7 +23,6 @@ from stribeck.numerics.settings import (
     BAND,
     GMRES_RTOL,
     HALF_DIGITS,
-    MAX_BAND,
     MAX_STEPS,
     NEGLIGIBLE,
     SAFETY,
@@ -83,9 +82,11 @@ def iterate(
             solved = _solved(linear, preconditioner, right, residual[0], linear_rtol(size, tolerance))
             krylov += solved.steps
             if not solved.accepted:
-                if is_new and not band < min(MAX_BAND, preconditioner.shape[0] - 1):
-                    return ended(Outcome.SINGULAR)
-                band, preconditioner = MAX_BAND if is_new else band, None
+                if is_new:
+                    if preconditioner.wider_band is None:
+                        return ended(Outcome.SINGULAR)
+                    band = preconditioner.wider_band
+                preconditioner = None
                 continue
             step = solved.step
             part = longest_step(law, y.gap, step.gap)

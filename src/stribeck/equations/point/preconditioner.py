@@ -15,6 +15,7 @@ from stribeck._types import Array, Indices
 from stribeck.equations.point.far_field import rates
 from stribeck.equations.point.system import Linear
 from stribeck.numerics.fourier_panels import lobatto, radau
+from stribeck.numerics.settings import MAX_BAND, MAX_BYTES
 
 Single = npt.NDArray[np.float32]
 
@@ -31,6 +32,15 @@ class BandedModes:
         self.row = linear.equations.load_row
         self.column = self.factors.solve(coupling.of_offset())
         self.pivot = float(self.row @ self.column[0])
+
+    @property
+    def wider_band(self) -> int | None:
+        """The band to take where this one does not serve: a wide one, then all modes, which is exact, if memory allows."""
+        modes, rings = self.shape
+        if self.band < min(MAX_BAND, modes - 1):
+            return MAX_BAND
+        fits = np.dtype(np.float32).itemsize * (modes * rings) ** 2 <= MAX_BYTES
+        return modes - 1 if self.band < modes - 1 and fits else None
 
     def __call__(self, right: Any) -> Any:
         """Return changes of total pressure, by mode, and offset that approximately remove residuals."""

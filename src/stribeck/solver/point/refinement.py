@@ -83,8 +83,13 @@ def refine(
             if coarse.outcome.ok:
                 fine = solve_level(wanted, speed, law, start, mesh, tolerance)
             if not fine.outcome.ok:
-                failure = fine.outcome
-                break
+                if best is not None or failure is not Outcome.REFINEMENT_LIMIT:
+                    failure = fine.outcome
+                    break
+                # On a mesh that hardly resolves the film the equations may have no state: one more try, on finer ones.
+                finer = finer_in(fine.resolution, radii=True, angles=True)
+                failure, wanted, coarse = fine.outcome, limit_modes(finer_in(finer, radii=True, angles=True)), None
+                continue
             pair = pair_of(coarse, fine)
             if best is None or pair.total < best.total or best.total <= rtol:
                 best = pair
