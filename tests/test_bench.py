@@ -328,6 +328,21 @@ def ball_on_disc(rng):
     return "\n".join(lines)
 
 
+def test_a_speed_beside_a_slide_to_roll_ratio_is_asked_whether_it_is_the_mean(written, subtests):
+    rows = "".join(f"{t};{1 + t // 4};{0.5 - 0.01 * t:.2f};50\n" for t in range(12))
+    column = "Time [s];Speed [mm/s];COF;SRR [%]\n" + rows
+    line = "SRR: 50 %\n" + column.replace(";SRR [%]", "").replace(";50\n", "\n")
+    name = line.partition("\n")[2]
+    for place, text, options in (("column", column, {}), ("line", line, {}), ("name", name, {"name": "rig_{slide_to_roll}"})):
+        with subtests.test(place=place):
+            path = written(text, "rig_0.5.csv")
+            with pytest.raises(sb.InputError, match="'Speed .mm/s.' may be the mean of both surface speeds or their sum"):
+                sb.bench.read(path, **options)
+            path = written(text.replace("Speed", "Mean speed"), "rig_0.5.csv")
+            found = sb.bench.read(path, **options)
+            assert found.speed == pytest.approx([2e-3, 4e-3, 6e-3]) and found.inputs == ({"slide_to_roll": 0.5},)
+
+
 def pin_on_disc(rng):
     """Return the text of a rig that writes laps, the size of the speed and the friction coefficient."""
     lines = ["Sample\tPDMS", "Normal load: 2 N", "", "Time [s]\tDistance [m]\tLaps\tLinear Speed [cm/s]\tµ"]

@@ -15,7 +15,7 @@ from stribeck.files.cells import is_named, rows_listed
 from stribeck.files.columns import has_dimension, si_factor
 from stribeck.files.table_reading import read_table
 from stribeck.files.text_table import TextTable
-from stribeck.fits.columns import columns_of, curve_labels, has_column, known_name, with_errors_named
+from stribeck.fits.columns import abscissa_of, columns_of, curve_labels, has_column, known_name, with_errors_named
 from stribeck.fits.repeats import FEWEST, errors_of_means
 from stribeck.fits.rig import column_of, measured, prepared, temperatures
 from stribeck.fits.stated import inputs_said
@@ -84,6 +84,7 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
         raise InputError(
             f"{table.path}: {show(next(iter(columns.values()))[0])} is no speed; a series needs a column of speed."
         )
+    abscissa_of(table, columns, settings)  # which asks where a speed may be the mean of both surfaces or their sum
     if len(columns["friction"]) > 1:
         raise InputError(
             f"{table.path} has curves side by side, which are no series in time; 'stribeck fit' reads it as it is."

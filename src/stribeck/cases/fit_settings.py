@@ -31,7 +31,7 @@ from stribeck.contacts.parts import PART_INPUTS, PURE_SLIDING, Parts
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.docstrings import complete_docstring
 from stribeck.quantities.schema import Input, numbers_of
-from stribeck.quantities.units import InputError, checked_kind, checked_word, number_or_text, show
+from stribeck.quantities.units import DIMENSIONS, InputError, checked_kind, checked_word, number_or_text, show
 
 Noise = Literal["relative", "absolute"]
 
@@ -230,9 +230,12 @@ class FileNames:
     regex: str  # The same as a regular expression with a group for each input
     units: dict[str, str]  # Input -> its unit; empty where the name has it
 
-    def values(self, name: str) -> dict[str, str]:
-        """Return the inputs in the name of a file as text with units."""
-        return {key: text for key, text in self._texts(name).items() if key not in LABELS}
+    def values(self, name: str) -> dict[str, Any]:
+        """Return the inputs in the name of a file, as text with units or bare numbers."""
+        found: dict[str, Any] = {key: text for key, text in self._texts(name).items() if key not in LABELS}
+        rows = numbers_of(Parts) | LINE.rows
+        bare = {key for key in found if key in rows and not DIMENSIONS[rows[key].dimension].unit}
+        return {key: number_or_text(text) if key in bare else text for key, text in found.items()}
 
     def labels(self, name: str) -> dict[str, str]:
         """Return fluid and run in the name of a file, as far as the pattern has them."""
@@ -331,13 +334,19 @@ class FitSettings:
     @property
     def ratios(self) -> tuple[float, ...]:
         """The slide-to-roll ratios of the contact and of curves that have their own."""
-        own = [float(curve["slide_to_roll"]) for curve in self.curves.values() if curve and "slide_to_roll" in curve]
+        entries = (*self.curves.values(), *self.files.values())
+        own = [float(each["slide_to_roll"]) for each in entries if each and "slide_to_roll" in each]
         return tuple(dict.fromkeys([self.slide_to_roll, *own]))
 
     @property
     def rolls(self) -> bool:
         """Whether both surfaces of a curve move."""
-        return any(abs(ratio) != PURE_SLIDING for ratio in self.ratios)
+        return self.names_have_ratio or any(abs(ratio) != PURE_SLIDING for ratio in self.ratios)
+
+    @property
+    def names_have_ratio(self) -> bool:
+        """Whether the names of the files say a slide-to-roll ratio."""
+        return self.file_names is not None and "slide_to_roll" in self.file_names.units
 
     @property
     def inputs(self) -> InputTable:

@@ -318,7 +318,7 @@ def _hersey(table: TextTable, name: str, settings: FitSettings) -> Abscissa:
 
 def _ask_for_the_sum(table: TextTable, abscissa: Abscissa, name: str, settings: FitSettings) -> None:
     """Refuse an abscissa of two moving surfaces of which nobody said whether it holds their mean speed or the sum."""
-    ratio = any(is_named(each, PATTERNS["slide_to_roll"]) for each in table.header)
+    ratio = settings.names_have_ratio or any(is_named(each, PATTERNS["slide_to_roll"]) for each in table.header)
     if normalised_header(name) in SUMS or not (ratio or settings.rolls):
         return
     said = " or ".join(f"{each:g}" for each in settings.ratios)

@@ -95,6 +95,7 @@ class Prepared(NamedTuple):
 
 def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], bool], *, signed: bool = False) -> Prepared:
     """Return a table with friction and speed computed from what a rig measured, ``signed`` with the direction of the force."""
+    table = _with_stated_ratio(table, settings)
     found, source = _rig_columns(table, settings), table
     said = []
     ours = set()
@@ -131,6 +132,20 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
     table = replace(table, notes=(*table.notes, *idle, *marked))
     units = {name: unit for name, unit in settings.units.items() if name not in ours}
     return Prepared(table, tuple(said), found.get("run", [""])[0], replace(settings, units=units), tuple(found))
+
+
+def _with_stated_ratio(table: TextTable, settings: FitSettings) -> TextTable:
+    """Return the table with a slide-to-roll ratio that a line of text gives in a column, where it has none."""
+    pattern = PATTERNS["slide_to_roll"]
+    if "slide_to_roll" in settings.columns or any(is_named(name, pattern) for name in table.header):
+        return table
+    stated = [(number, name, f"{value} {unit}".strip()) for number, name, value, unit in stated_in(table, pattern)]
+    if not stated:
+        return table
+    for number, name, text in stated[1:]:
+        if text != stated[0][2]:
+            refuse_two_values(table, (stated[0][0], number), (stated[0][1], name))
+    return table.with_column(stated[0][1], [stated[0][2]] * len(table.rows))
 
 
 def _declared_first(found: dict[str, list[str]], meanings: frozenset[str], settings: FitSettings) -> dict[str, list[str]]:
