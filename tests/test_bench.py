@@ -382,6 +382,15 @@ def test_a_ball_on_disc_with_two_drives(written):
     assert_holds(found)
 
 
+def test_fit_reads_a_curve_of_two_drives_that_warmed(written, tmp_path):
+    rows = "".join(f"{t};{1 + t // 4};{0.5 - 0.01 * t:.2f};50;{25 + t // 4}\n" for t in range(12))
+    path = written("Time [s];Mean speed [mm/s];COF;SRR [%];Temperature [°C]\n" + rows)
+    found = sb.bench.read(path, fluid="iso-vg grade=46")
+    found.to_csv(tmp_path / "curve.csv")
+    read = sb.read_measurements(tmp_path / "curve.csv")
+    assert read.abscissa == "speed_viscosity" and read.values == pytest.approx(found.viscosity * found.speed)
+
+
 def test_a_pin_on_disc_whose_friction_goes_up_and_down_with_each_lap(written):
     found = sb.bench.read(written(pin_on_disc(np.random.default_rng(12)), "pin.txt"))
     assert len(found) == 6 and found.inputs == ({"load": 2.0},)

@@ -154,7 +154,8 @@ class BenchCurve(Exported, Told, ByValue):
         if "viscosity" not in given and np.isfinite(self.viscosity).all():
             of_curve = np.array([float(np.mean(self.viscosity[self.curve == k])) for k in range(len(self.curves))])
             if self._warms():  # friction depends on viscosity times speed
-                columns["eta U [Pa*m]"] = cells(self.viscosity * self.speed)
+                product = "viscosity times sum of speeds [Pa*m]" if self.rolls else "eta U [Pa*m]"
+                columns[product] = cells(self.viscosity * self.speed)
                 columns["rig speed [m/s]"] = cells(self.speed)
                 columns["local viscosity [Pa*s]"] = cells(self.viscosity)
             else:

@@ -48,7 +48,7 @@ _ETA_U_F = r"eta u(?: r)? (?:f|w|load)(?: n)?"
 WORDS = {
     "speed": r"(?:sliding |linear )?(?:speed|velocity)|u|v ?1?|[uv] (?:s|sl|slide|sliding|rel)|(?:gleit)?geschwindigkeit|"
     + "|".join(SUMS),
-    "speed_viscosity": "eta u|etau|speed viscosity|viscosity speed|viscosity times speed",
+    "speed_viscosity": rf"eta u|etau|speed viscosity|viscosity speed|viscosity times (?:speed|{'|'.join(SUMS)})",
     "hersey_number": rf"{_HERSEY}|{_HERSEY} {_ETA_U_F}|{_ETA_U_F}",
     "friction": _FRICTION,
     "error": rf"{_ERROR}|{_FRICTION} {_ERROR}|{_ERROR} (?:of )?{_FRICTION}",
@@ -319,7 +319,7 @@ def _hersey(table: TextTable, name: str, settings: FitSettings) -> Abscissa:
 def _ask_for_the_sum(table: TextTable, abscissa: Abscissa, name: str, settings: FitSettings) -> None:
     """Refuse an abscissa of two moving surfaces of which nobody said whether it holds their mean speed or the sum."""
     ratio = settings.names_have_ratio or any(is_named(each, PATTERNS["slide_to_roll"]) for each in table.header)
-    if normalised_header(name) in SUMS or not (ratio or settings.rolls):
+    if normalised_header(name).removeprefix("viscosity times ") in SUMS or not (ratio or settings.rolls):
         return
     said = " or ".join(f"{each:g}" for each in settings.ratios)
     why = "the file has a slide-to-roll ratio" if ratio else f"both surfaces move (slide-to-roll ratio {said})"
