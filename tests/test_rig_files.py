@@ -657,6 +657,29 @@ def test_a_line_above_the_header_says_an_input_in_any_usual_form(subtests, writt
             assert read(written(f"{line}\n{rows}")).inputs[0]["viscosity"] == pytest.approx(0.05)
 
 
+def test_a_line_gives_an_input_with_its_error_or_is_noted_as_not_used(subtests, written):
+    rows = table("speed [mm/s];COF", speed, friction)
+    for line in ("Load: 2 ± 0.1 N", "Load: 2 N +/- 0.1 N", "Load (N): 2 +- 0.1"):
+        with subtests.test(line=line):
+            assert read(written(f"{line}\n{rows}")).inputs == ({"load": 2.0},)
+    for line, what in (("Load: approx. 2 N", "approx. 2 N"), ("Load = 2-3 N", "2-3 N")):
+        with subtests.test(line=line):
+            found = read(written(f"{line}\n{rows}"))
+            assert found.inputs == ({},)
+            assert f"The load {what!r} of row 1 was not used: it is no number with a unit." in found.notes
+
+
+def test_a_line_between_the_rows_is_not_of_those_above_it(subtests, written):
+    head, *rows = table("speed [mm/s];COF", speed, friction).splitlines()
+    force = head.replace("COF", "Fx [N]")
+    for first, line in ((head, "# load: 5 N"), (head, "SRR: 50 %"), (force, "Normal force: 5 N")):
+        text = "\n".join([first, *rows[:4], line, *rows[4:]])
+        for reader in (read, sb.bench.read):
+            with subtests.test(line=line, reader=reader.__name__):
+                with pytest.raises(sb.InputError, match=r"row 6 gives '.*' between the rows of numbers"):
+                    reader(written(text))
+
+
 def test_a_line_above_the_header_with_marks_between_thousands_is_refused(subtests, written):
     rows = table("speed [mm/s];COF", speed, friction)
     for line in ("Viscosity: 1,050 mPa*s", "Viscosity [mPa*s];Load\n1,050;3", "Viscosity: 1.050,0 mPa*s"):

@@ -22,7 +22,7 @@ from stribeck.files.cells import (
     thousands_in,
 )
 from stribeck.files.table_reading import STEP_HEADER, read_table
-from stribeck.files.text_table import TextTable
+from stribeck.files.text_table import PLUS_MINUS, TextTable
 from stribeck.files.writing import PathLike, path_of
 from stribeck.quantities.units import InputError, RowError, show, to_si
 
@@ -39,7 +39,8 @@ _TURNS_PER_SECOND = re.compile(r"(?:U/s|1/s|Hz|s\^?[-−]1|s⁻¹)")
 
 _STATED = re.compile(
     r"\W*(?P<name>[^:;,=\t\[(]*?)\s*(?:[\[(](?P<before>[^\])]*)[\])])?\s*[:;,=\t][\s:;,=]*"
-    rf"(?P<value>(?:{THOUSANDS.pattern}|[-+]?[0-9]+(?:[.,][0-9]+)?)(?:[eE][-+]?[0-9]+)?)\s*[;,\t]?\s*[\[(]?(?P<after>(?:[A-Za-zµμ°%][^;,:=\t\])]*)?)[\])]?[\s;,]*"
+    rf"(?P<value>(?:{THOUSANDS.pattern}|[-+]?[0-9]+(?:[.,][0-9]+)?)(?:[eE][-+]?[0-9]+)?)"
+    rf"(?:{PLUS_MINUS.pattern}[0-9.,]+)?\s*[;,\t]?\s*[\[(]?(?P<after>(?:[A-Za-zµμ°%][^;,:=\t\])]*)?)[\])]?[\s;,]*"
 )
 
 
@@ -196,6 +197,16 @@ def refuse_two_values(table: TextTable, rows: Sequence[int], names: Sequence[str
     )
 
 
+def refuse_late_value(table: TextTable, row: int, name: str) -> None:
+    """Refuse a file in which a line gives a quantity between the rows of numbers, of which those above it have none."""
+    if table.numbers[0] < row < table.numbers[-1]:
+        raise InputError(
+            f"{table.path}: row {row} gives {show(name)} between the rows of numbers, and nothing says that of those above "
+            "it; write a column with its unit, say one for all in the case ([fit.files], track_radius or arm in [fit]), or "
+            "split the file."
+        )
+
+
 def stated_in(table: TextTable, pattern: str) -> Iterator[tuple[int, str, str, str]]:
     """Yield row, name, number and unit of each quantity that is called so and that lines of text give, above or between."""
     for number, name, value, unit in _stated(table):
@@ -211,7 +222,9 @@ def _stated(table: TextTable) -> Iterator[tuple[int, str, str, str]]:
         # One quantity in a line, several in it, or names whose values stand below.
         pieces = [text, *re.split(r"[;,|]\s+|\t|(?<=[\])]),", text)]
         found = [each for each in (_STATED.fullmatch(piece.strip()) for piece in pieces) if each]
-        yield from ((number, each["name"], each["value"], (each["before"] or each["after"] or "").strip()) for each in found)
+        for each in found:
+            unit = PLUS_MINUS.split(each["before"] or each["after"] or "")[0].strip()
+            yield number, each["name"], each["value"], unit
         mark = next((mark for mark in "\t;," if mark in text), "")
         if found or not mark:
             continue

@@ -25,7 +25,7 @@ from stribeck.quantities.units import InputError, show
 
 CURVE_HEADER = "curve"  # Header of the column that names the curves of a file that has them side by side
 
-_PLUS_MINUS = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
+PLUS_MINUS = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
 
 
 @dataclass(frozen=True)
@@ -250,7 +250,7 @@ def split_errors(table: TextTable) -> TextTable:
     """Return the table with what follows a plus-minus sign in the cells of a column in one of its own."""
     for at in reversed(range(len(table.header))):
         cells = [row[at] for row in table.rows]
-        parts = [_PLUS_MINUS.split(cell) for cell in cells]
+        parts = [PLUS_MINUS.split(cell) for cell in cells]
         pairs = [len(part) == 2 and all(map(has_number, part)) for part in parts]
         if not any(pairs) or not all(pair or is_missing(cell) for pair, cell in zip(pairs, cells, strict=True)):
             continue

@@ -15,7 +15,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.cells import decimal_of, is_named, normalised_header, rows_listed
-from stribeck.files.columns import has_dimension, refuse_two_values, si_factor, stated_in
+from stribeck.files.columns import has_dimension, refuse_late_value, refuse_two_values, si_factor, stated_in
 from stribeck.files.text_table import TextTable
 from stribeck.fits.repeats import FEWEST
 from stribeck.fits.values import MADE_FRICTION, dimension_of, is_set, named_in_case, numbers, undeclared, unit_in
@@ -145,6 +145,7 @@ def _with_stated_ratio(table: TextTable, settings: FitSettings) -> TextTable:
     for number, name, text in stated[1:]:
         if text != stated[0][2]:
             refuse_two_values(table, (stated[0][0], number), (stated[0][1], name))
+    refuse_late_value(table, *stated[0][:2])
     return table.with_column(stated[0][1], [stated[0][2]] * len(table.rows))
 
 
@@ -368,6 +369,8 @@ def stated_size(table: TextTable, pattern: str, dimension: str) -> tuple[float, 
     for size, number, name in found[1:]:
         if not is_same(size, found[0][0], measured=dimension == "force"):
             refuse_two_values(table, (found[0][1], number), (found[0][2], name))
+    if found:
+        refuse_late_value(table, *found[0][1:])
     return found[0] if found else None
 
 

@@ -1,14 +1,16 @@
 """What a file of measured friction says of all of its rows: in lines above its header, in its name, and in the case."""
 
+import re
 from fnmatch import fnmatchcase
 from typing import Any
 
 from stribeck.cases.fit_settings import FitSettings, inputs_of_file
-from stribeck.files.columns import has_dimension, refuse_two_values, si_factor, stated_in
+from stribeck.files.cells import is_named
+from stribeck.files.columns import has_dimension, refuse_late_value, refuse_two_values, si_factor, stated_in
 from stribeck.files.text_table import TextTable
 from stribeck.fits.rig import PATTERNS, is_same, stated_size
 from stribeck.fluids.description import celsius
-from stribeck.quantities.units import DIMENSIONS, InputError
+from stribeck.quantities.units import DIMENSIONS, InputError, show
 
 _OF_FLUID = r"(?:(?:test|sample|oil|fluid|liquid|lubricant|bath|pot|mean) )?"
 
@@ -44,6 +46,8 @@ def inputs_said(
         apart = [row for other, _, row in others if not is_same(size, other, measured=key == "load")]
         if apart and given.get(key) == text:
             refuse_two_values(table, (number, apart[0]), (key, key))
+        if given.get(key) == text:
+            refuse_late_value(table, number, key)
     if not {"load", "curve"} & {*columns, *given}:
         stated_size(table, PATTERNS["normal_force"], "force")  # two forces on a cylinder, whose load they are not
     found = inputs_of_file(path, given, settings.inputs, settings.liquid) if given else {}
@@ -74,7 +78,14 @@ def _lines(
     found: dict[str, dict[float, tuple[float, str, int]]] = {}
     unread: dict[str, str] = {}
     for key in keys:
-        for number, _, value, unit in stated_in(table, NAMES[key]):
+        stated = list(stated_in(table, NAMES[key]))
+        known = {number for number, *_ in stated}
+        for number, line in (*table.above, *table.between):
+            name, _, text = re.split("([:=\t]|$)", line, maxsplit=1)
+            if number not in known and re.search("[0-9]", text) and is_named(name, NAMES[key]):
+                what = f"{show(text.strip())} of row {number}"
+                unread.setdefault(key, f"The {key} {what} was not used: it is no number with a unit.")
+        for number, _, value, unit in stated:
             texts = [f"{value} {unit}"] if unit else []
             if unit and key != "temperature" and has_dimension(unit, settings.inputs.quantities[key].dimension):
                 kind = settings.inputs.quantities[key].dimension
@@ -87,6 +98,7 @@ def _lines(
                 usual = DIMENSIONS[settings.inputs.quantities[key].dimension].unit
                 what = f"{value} {unit}".strip()
                 unread.setdefault(key, f"The {key} {what} of row {number} was not used: it is not in {usual} or alike.")
+    unread.pop("temperature", None)  # of which a note tells by its column
     return {key: list(values.values()) for key, values in found.items()}, unread
 
 
