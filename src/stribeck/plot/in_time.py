@@ -64,15 +64,8 @@ def _draw_rows(above: Axes, below: Axes, curve: BenchCurve) -> None:
             continue
         rows = rows[:: -(-len(rows) // MAX_DRAWN)]
         for axes, values in ((above, np.abs(curve.row_speed)), (below, curve.row_friction)):
-            form: dict[str, Any] = {
-                "color": colour,
-                "ms": size,
-                "ls": "none",
-                "marker": ".",
-                "zorder": 2 + k,
-                "rasterized": True,
-            }
-            axes.plot(time[rows], values[rows], label=label, **form)
+            look: dict[str, Any] = {"color": colour, "ms": size, "zorder": 2 + k, "rasterized": True}
+            axes.plot(time[rows], values[rows], ".", label=label, **look)
     usual = np.abs(curve.row_friction[curve.status == 0])
     if len(usual):
         below.set_ylim(min(0.0, float(curve.row_friction[curve.status == 0].min())), 1.4 * float(usual.max()))
@@ -106,15 +99,8 @@ def _draw_points(axes: Axes, curve: BenchCurve) -> None:
     for k, name in enumerate(curve.curves):
         mine = curve.curve == k
         bars = np.where(np.isfinite(curve.half_width[mine]), curve.half_width[mine], 0.0)
-        form: dict[str, Any] = {
-            "ls": "none",
-            "marker": "o",
-            "ms": 4.0,
-            "mfc": "white",
-            "capsize": 2.0,
-            "color": SERIES[k % len(SERIES)],
-        }
-        axes.errorbar(curve.speed[mine], curve.friction[mine], bars, label=name or "mean and 95 % interval", **form)
+        look: dict[str, Any] = {"fmt": "o", "ms": 4.0, "mfc": "white", "capsize": 2.0, "color": SERIES[k % len(SERIES)]}
+        axes.errorbar(curve.speed[mine], curve.friction[mine], bars, label=name or "mean and 95 % interval", **look)
     make_logarithmic(axes, "x", curve.speed)
     if (curve.friction > 0).all():
         make_logarithmic(axes, "y", curve.friction)
