@@ -122,18 +122,11 @@ def _instants(found: Stroke) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = [("time", "position", "speed", "friction", "error", "share of asperities", "central film")]
     first, end = found.last_cycle.indices(len(found.time))[:2]
     for k in range(first, end, max((end - first) // ROWS, 1)):
-        place = float(found.position[k])
-        numbers = (
-            f"{found.friction[k]:.4g}",
-            f"± {format_error(found.errors['friction'][k])}",
-            f"{found.contact_load_share[k]:.3g}",
-        )
-        where = (
-            format_si(found.time[k], "time"),
-            format_si(place if abs(place) > ROUNDING * found.hertz_half_width else 0.0, "length"),
-            format_si(found.speed[k], "speed"),
-        )
-        rows.append((*where, *numbers, format_si(found.central_film_thickness[k], "length")))
+        place = found.position[k] if abs(found.position[k]) > ROUNDING * found.hertz_half_width else 0.0
+        where = format_si(found.time[k], "time"), format_si(place, "length"), format_si(found.speed[k], "speed")
+        friction, error = f"{found.friction[k]:.4g}", f"± {format_error(found.errors['friction'][k])}"
+        film = format_si(found.central_film_thickness[k], "length")
+        rows.append((*where, friction, error, f"{found.contact_load_share[k]:.3g}", film))
     return rows
 
 
@@ -211,18 +204,8 @@ def _leak_lines(found: PressureFilm, net: float, inlets: dict[str, Inlet], swept
         k, rise = each.edge_coefficient * MM**0.5 / MPA, each.steepest_rise * MM / MPA
         pairs = (each.edge_coefficient_error, each.edge_coefficient), (each.steepest_rise_error, each.steepest_rise)
         first, second = (format_percent(doubt / value) if value else "" for doubt, value in pairs)
-        step = format_si(each.spacing, "length", 2)
-        edges.append(
-            (
-                name,
-                f"{round(each.edge / MM, 3) + 0.0:.3f} mm",
-                f"{k:.3g} MPa/mm^(1/2)",
-                first,
-                f"{rise:.3g} MPa/mm",
-                second,
-                step,
-            )
-        )
+        place, step = f"{round(each.edge / MM, 3) + 0.0:.3f} mm", format_si(each.spacing, "length", 2)
+        edges.append((name, place, f"{k:.3g} MPa/mm^(1/2)", first, f"{rise:.3g} MPa/mm", second, step))
     yield from table_lines(films, right=(1, 2, 3, 4, 5))
     yield from table_lines(edges, right=(1, 2, 3, 4, 5, 6))
     yield from (f"Note: {note}" for note in found.notes)

@@ -49,7 +49,10 @@ class Option(NamedTuple):
 # The numbers of laws and surfaces, which are the keys of options.
 NUMBERS = LAW_NUMBERS | SURFACE.quantities | {"gamma": GAMMA_INPUT}
 
-OF_SURFACE = Option("", ("hurst", "longest_wavelength", "shortest_wavelength"), ("roll_off_wavelength", "gamma"))
+OF_SURFACE = (
+    ("hurst", "longest_wavelength", "shortest_wavelength"),
+    ("roll_off_wavelength", "gamma"),
+)  # Needed and optional keys
 NO_DETAILS = ("h_rms", "wavenumber", "density", "title", "shape_only")  # Keys of a surface that no field shows
 
 
@@ -90,60 +93,29 @@ def _of_kind(name: str) -> Choice:
     return Choice(names.get(name, name), kind.label, kind.table, "" if name == "solid" else kind.key, options)
 
 
-CHOICES = {
-    each.name: each
-    for each in (
-        Choice(
-            "geometry",
-            "Geometry",
-            "contact",
-            "geometry",
-            {"line": Option("cylinder on flat"), "point": Option("ball on flat")},
-        ),
-        Choice(
-            "law",
-            "Contact law",
-            "contact",
-            "law",
-            {
-                law: (OF_SURFACE if law == "persson" else Option(""))._replace(
-                    label=" and ".join(map(str.capitalize, law.split("-")))
-                )
-                for law in LAWS
-            },
-        ),
-        Choice(
-            "preset",
-            "Fluid preset",
-            "",
-            "",
-            {"": Option("choose ...")} | {name: Option(each.label.replace("degC", "°C")) for name, each in PRESETS.items()},
-        ),
-        *(_of_kind(name) for name in FLUID_KINDS),
-        Choice(
-            "cavitation",
-            "Cavitation",
-            "cavitation",
-            "model",
-            {
-                str(Cavitation.NONE): Option("none"),
-                str(Cavitation.EXIT): Option("film ends at the exit"),
-                str(Cavitation.REFORM): Option("cavity, film re-forms", (), ("cavity_pressure",)),
-            },
-        ),
-        Choice(
-            "motion",
-            "Motion",
-            "contact",
-            "",
-            {"sliding": Option("one surface at rest"), "rolling": Option("both surfaces move", ("slide_to_roll",))},
-        ),
-        _of_kind("flow_factors"),
-        _of_kind("solid"),
-        _of_kind("profile"),
-        _of_kind("asperity_friction"),
-    )
+GEOMETRIES = {"line": Option("cylinder on flat"), "point": Option("ball on flat")}
+ASPERITY_LAWS = {
+    law: Option(" and ".join(map(str.capitalize, law.split("-"))), *(OF_SURFACE if law == "persson" else ())) for law in LAWS
 }
+LIQUIDS = {"": Option("choose ...")} | {name: Option(each.label.replace("degC", "°C")) for name, each in PRESETS.items()}
+ENDS_OF_FILM = {
+    str(Cavitation.NONE): Option("none"),
+    str(Cavitation.EXIT): Option("film ends at the exit"),
+    str(Cavitation.REFORM): Option("cavity, film re-forms", (), ("cavity_pressure",)),
+}
+MOTIONS = {"sliding": Option("one surface at rest"), "rolling": Option("both surfaces move", ("slide_to_roll",))}
+
+LISTS = (
+    Choice("geometry", "Geometry", "contact", "geometry", GEOMETRIES),
+    Choice("law", "Contact law", "contact", "law", ASPERITY_LAWS),
+    Choice("preset", "Fluid preset", "", "", LIQUIDS),
+    *map(_of_kind, FLUID_KINDS),
+    Choice("cavitation", "Cavitation", "cavitation", "model", ENDS_OF_FILM),
+    Choice("motion", "Motion", "contact", "", MOTIONS),
+    *map(_of_kind, ("flow_factors", "solid", "profile", "asperity_friction")),
+)
+
+CHOICES = {each.name: each for each in LISTS}
 """The lists, in the order of the page."""
 
 
