@@ -136,6 +136,15 @@ LINE_BY_CAVITATION = {
 
 _SHARED = {row.name: row for row in ROWS}
 
+# The friction integrals of the ball, which enter friction: name, end of the label, and meaning.
+INTEGRALS = (
+    ("J_couette", ", Couette part", "finite part of the friction integral of the shear flow"),
+    ("J_poiseuille", ", Poiseuille part", "finite part of the friction integral of the pressure flow"),
+    ("J_balanced", ", balanced", "finite part of the balanced friction integral"),
+    ("J_published", ", published", "finite part of the published friction integral"),
+    ("J_pcx", " of asperities", "integral of the contact pressure along x, with its sign"),
+)
+
 # The observables of the ball.
 POINT = OutputTable(
     (
@@ -168,25 +177,7 @@ POINT = OutputTable(
             "offset", "offset z0", "height of the undeformed ball over the undeformed surface", "gap", "undeformed_height"
         ),
         _SHARED["lambda_ratio"],
-        Observable(
-            "J_couette",
-            "friction integral, Couette part",
-            "finite part of the friction integral of the shear flow",
-            listed=False,
-        ),
-        Observable(
-            "J_poiseuille",
-            "friction integral, Poiseuille part",
-            "finite part of the friction integral of the pressure flow",
-            listed=False,
-        ),
-        Observable("J_balanced", "friction integral, balanced", "finite part of the balanced friction integral", listed=False),
-        Observable(
-            "J_published", "friction integral, published", "finite part of the published friction integral", listed=False
-        ),
-        Observable(
-            "J_pcx", "friction integral of asperities", "integral of the contact pressure along x, with its sign", listed=False
-        ),
+        *(Observable(name, f"friction integral{label}", meaning, listed=False) for name, label, meaning in INTEGRALS),
         Observable(
             "identity_error",
             "error of the identity",

@@ -99,19 +99,13 @@ _NOUNS = {kind.unit: kind.noun for kind in DIMENSIONS.values() if kind.unit not 
 _HINTS = {
     ("N", "N/m"): "a force is the load of a ball, PointContact or geometry = 'point'; that of a cylinder, LineContact or "
     "geometry = 'line', is the force divided by its length",
-    (
-        "N/m",
-        "N",
-    ): "a load per unit length is that of a cylinder, LineContact or geometry = 'line'; that of a ball, PointContact "
-    "or geometry = 'point', is the whole force",
+    ("N/m", "N"): "a load per unit length is that of a cylinder, LineContact or geometry = 'line'; that of a ball, "
+    "PointContact or geometry = 'point', is the whole force",
     ("kg", "N"): "a mass presses with 9.81 N/kg",
     ("kg", "N/m"): "a mass presses with 9.81 N/kg; divide the force on a cylinder by its length",
     ("m^2/s", "Pa*s"): "give it as kinematic_viscosity, with the density; or multiply it by the density",
-    (
-        "1/s",
-        "m/s",
-    ): "give it as rotational_speed, with the shaft_diameter; or multiply the angular velocity in rad/s by the "
-    "radius of the shaft or track",
+    ("1/s", "m/s"): "give it as rotational_speed, with the shaft_diameter; or multiply the angular velocity in rad/s by "
+    "the radius of the shaft or track",
 }
 
 # Bounded, because the number becomes an exact fraction and 1e999999999 would fill the memory.
