@@ -21,13 +21,8 @@ FRAME_TIMEOUT = 2.0  # Time after which a browser that does not answer gets the 
 
 FILE_ENDINGS = (".toml", ".csv", ".txt", ".tsv", ".dat", ".xlsx", *SCAN_ENDINGS)
 
-PARTS_OF_BROWSER = (
-    "complaint",
-    "code",
-    "mapping",
-    "fitting",
-    "fitted",
-)  # Parts that the browser closes without a word to Python
+# Parts that the browser closes without a word to Python
+PARTS_OF_BROWSER = ("complaint", "code", "mapping", "fitting", "fitted")
 
 Problems = dict[str, dict[str, str]]  # What is wrong with fields and lists: text, sentence, and the key of a list
 

@@ -145,15 +145,8 @@ def new_figure(
     place = 0.8 / width, 1 - 0.16 / height
     figure.text(*place, headline, size=14, weight="bold", color=INK, va="top", parse_math=False)
     for i, (line, colour) in enumerate(reversed(caption)):
-        figure.text(
-            0.8 / width,
-            (0.14 + CAPTION_LINE_INCH * i) / height,
-            line,
-            size=8,
-            color=colour,
-            va="bottom",
-            parse_math=colour == GREY,
-        )
+        place = 0.8 / width, (0.14 + CAPTION_LINE_INCH * i) / height
+        figure.text(*place, line, size=8, color=colour, va="bottom", parse_math=colour == GREY)
     return figure, axes
 
 

@@ -9,20 +9,14 @@ from pathlib import Path
 from stribeck.files.cells import THOUSANDS, decimal_of
 from stribeck.quantities.units import InputError, show, to_si
 
-_WORDS = {
-    "micrometer": "um",
-    "micrometre": "um",
-    "mikrometer": "um",
-    "micron": "um",
-    "nanometer": "nm",
-    "nanometre": "nm",
-    "millimeter": "mm",
-    "millimetre": "mm",
-    "angstrom": "Å",
-    "ångström": "Å",
-    "meter": "m",
-    "metre": "m",
+_NAMES = {
+    "um": ("micrometer", "micrometre", "mikrometer", "micron"),
+    "nm": ("nanometer", "nanometre"),
+    "mm": ("millimeter", "millimetre"),
+    "Å": ("angstrom", "ångström"),
+    "m": ("meter", "metre"),
 }
+_WORDS = {word: unit for unit, words in _NAMES.items() for word in words}
 _LENGTH = r"(?:nm|µm|μm|um|ƒÊm|mm|cm|pm|m|Å|A|(?:" + "|".join(sorted(_WORDS, key=len, reverse=True)) + r")s?)"
 _UNIT = re.compile(rf"[\[(]\s*([^\])]+?)\s*[\])]|(?:^|[,/_ ])\s*({_LENGTH})\s*$", re.IGNORECASE)
 _NUMBER = rf"(?:{THOUSANDS.pattern}(?!\d)|[+-]?(?:\d+(?:[.,]\d+)?|\.\d+))(?:[eE][+-]?\d+)?"
