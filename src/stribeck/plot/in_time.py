@@ -9,21 +9,7 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.bench.loop_fit import LoopFit
 from stribeck.plot import style
-from stribeck.plot.style import (
-    CONTACT,
-    FLUID,
-    GREY,
-    INK,
-    MARK,
-    SERIES,
-    Axes,
-    Figure,
-    add_legend,
-    make_logarithmic,
-    new_figure,
-    readable_unit,
-    with_unit,
-)
+from stribeck.plot.style import Axes, Figure
 from stribeck.quantities.units import InputError
 from stribeck.strokes.result import Stroke
 
@@ -34,7 +20,7 @@ if TYPE_CHECKING:
 MAX_DRAWN = 20_000  # Rows of each kind that are drawn, evenly spaced ones of more
 
 # Colour and size of the rows by what became of them.
-LOOKS = ((FLUID, 2.2), (GREY, 1.5), (GREY, 1.5), (CONTACT, 2.5), (MARK, 2.5))
+LOOKS = ((style.FLUID, 2.2), (style.GREY, 1.5), (style.GREY, 1.5), (style.CONTACT, 2.5), (style.MARK, 2.5))
 LABELS = ("kept", "at rest", "speed changes", "start of a step", "run-in")
 
 
@@ -45,13 +31,13 @@ def plot_bench(curve: BenchCurve, *, ax: Axes | None = None, title: str = "", no
         raise InputError("there are no points, so that there is nothing to draw.")
     size = (9.0, 8.2) if ax is None else (9.0, 4.0)
     said = [each for each in curve.notes if each.startswith("Left out")] if notes else []
-    figure, axes = new_figure(size, [], said, title=title or "What was kept, and the curve", ax=ax, rows=3)
+    figure, axes = style.new_figure(size, [], said, title=title or "What was kept, and the curve", ax=ax, rows=3)
     if ax is None:
         _draw_rows(axes[0], axes[1], curve)
         box = axes[2].get_position()
         axes[2].set_position((box.x0, box.y0, box.width, box.height * 0.82))
     _draw_points(axes[-1], curve)
-    add_legend(figure, axes, columns=5, inside=ax is not None)
+    style.add_legend(figure, axes, columns=5, inside=ax is not None)
     return figure
 
 
@@ -70,14 +56,14 @@ def _draw_rows(above: Axes, below: Axes, curve: BenchCurve) -> None:
     if len(usual):
         below.set_ylim(min(0.0, float(curve.row_friction[curve.status == 0].min())), 1.4 * float(usual.max()))
     moving = np.abs(curve.row_speed[(curve.row_speed != 0) & (curve.status == 0)])
-    make_logarithmic(above, "y", moving)
+    style.make_logarithmic(above, "y", moving)
     above.set_ylim(float(moving.min()) / 2, 2 * float(moving.max()))
     above.set_ylabel("size of the speed (m/s)")
     below.set(xlabel="time (s)", ylabel="friction of the rows")
     above.tick_params(labelbottom=False)
     for edge in edges:
         for axes in (above, below):
-            axes.axvline(edge, color=INK, lw=0.7)
+            axes.axvline(edge, color=style.INK, lw=0.7)
 
 
 def _one_after_another(curve: BenchCurve) -> tuple[Array, list[float]]:
@@ -99,11 +85,17 @@ def _draw_points(axes: Axes, curve: BenchCurve) -> None:
     for k, name in enumerate(curve.curves):
         mine = curve.curve == k
         bars = np.where(np.isfinite(curve.half_width[mine]), curve.half_width[mine], 0.0)
-        look: dict[str, Any] = {"fmt": "o", "ms": 4.0, "mfc": "white", "capsize": 2.0, "color": SERIES[k % len(SERIES)]}
+        look: dict[str, Any] = {
+            "fmt": "o",
+            "ms": 4.0,
+            "mfc": "white",
+            "capsize": 2.0,
+            "color": style.SERIES[k % len(style.SERIES)],
+        }
         axes.errorbar(curve.speed[mine], curve.friction[mine], bars, label=name or "mean and 95 % interval", **look)
-    make_logarithmic(axes, "x", curve.speed)
+    style.make_logarithmic(axes, "x", curve.speed)
     if (curve.friction > 0).all():
-        make_logarithmic(axes, "y", curve.friction)
+        style.make_logarithmic(axes, "y", curve.friction)
     axes.set(xlabel="speed $U$, sum of both surfaces (m/s)", ylabel=style.FRICTION)
 
 
@@ -115,7 +107,7 @@ def plot_stroke(stroke: Stroke, *, ax: Axes | None = None, title: str = "", note
     """
     data, last = stroke.to_dataset(), stroke.last_cycle
     size, said = (10.0, 4.6), [[str(data.attrs["inputs"])]]
-    figure, (loop, *others) = new_figure(
+    figure, (loop, *others) = style.new_figure(
         size,
         said,
         stroke.notes if notes else (),
@@ -124,21 +116,21 @@ def plot_stroke(stroke: Stroke, *, ax: Axes | None = None, title: str = "", note
         columns=2,
     )
     x, mu, error = (np.asarray(data[name])[last] for name in ("position", "friction", "friction_error"))
-    factor, unit = readable_unit("length", float(np.ptp(x)))
-    loop.errorbar(x * factor, mu, error, color=INK, ecolor=GREY, lw=1.4, label="friction")
-    loop.plot(x * factor, np.asarray(data["friction_asperities"])[last], color=CONTACT, lw=1.0, label="by asperities")
-    loop.plot(x * factor, np.asarray(data["friction_fluid"])[last], color=FLUID, lw=1.0, label="by the fluid")
-    loop.axhline(0.0, color=GREY, lw=0.6, zorder=0)
-    loop.set(xlabel=with_unit("position", unit), ylabel="friction coefficient")
+    factor, unit = style.readable_unit("length", float(np.ptp(x)))
+    loop.errorbar(x * factor, mu, error, color=style.INK, ecolor=style.GREY, lw=1.4, label="friction")
+    loop.plot(x * factor, np.asarray(data["friction_asperities"])[last], color=style.CONTACT, lw=1.0, label="by asperities")
+    loop.plot(x * factor, np.asarray(data["friction_fluid"])[last], color=style.FLUID, lw=1.0, label="by the fluid")
+    loop.axhline(0.0, color=style.GREY, lw=0.6, zorder=0)
+    loop.set(xlabel=style.with_unit("position", unit), ylabel="friction coefficient")
     if others:
         time, film = np.asarray(data["time"])[last], np.asarray(data["central_film_thickness"])[last]
-        factor, unit = readable_unit("length", float(film.max()))
-        others[0].plot(time, film * factor, color=FLUID, lw=1.4, label="film at the centre")
+        factor, unit = style.readable_unit("length", float(film.max()))
+        others[0].plot(time, film * factor, color=style.FLUID, lw=1.4, label="film at the centre")
         others[0].plot(
-            time, np.asarray(data["minimum_film_thickness"])[last] * factor, color=MARK, lw=1.2, label="thinnest film"
+            time, np.asarray(data["minimum_film_thickness"])[last] * factor, color=style.MARK, lw=1.2, label="thinnest film"
         )
-        others[0].set(xlabel="time (s)", ylabel=with_unit("film", unit))
-    add_legend(figure, [loop, *others], columns=5, inside=ax)
+        others[0].set(xlabel="time (s)", ylabel=style.with_unit("film", unit))
+    style.add_legend(figure, [loop, *others], columns=5, inside=ax)
     return figure
 
 
@@ -147,13 +139,17 @@ def plot_loop_fit(fit: LoopFit, *, ax: Axes | None = None, title: str = "", note
     """Draw measured and fitted friction over position or time."""
     data = fit.to_dataset()
     said = [[f"{each.label} {' ± '.join(each.texts[:2])}" for each in fit.inputs]]
-    figure, (axes,) = new_figure((6.4, 4.6), said, fit.notes if notes else (), title=title or "A fitted friction loop", ax=ax)
+    figure, (axes,) = style.new_figure(
+        (6.4, 4.6), said, fit.notes if notes else (), title=title or "A fitted friction loop", ax=ax
+    )
     x = np.asarray(data[fit.over])
-    factor, unit = readable_unit("length", float(np.ptp(x))) if fit.over == "position" else (1.0, "s")
-    axes.plot(x * factor, np.asarray(data["friction"]), ".", color=GREY, ms=4, label="measured")
+    factor, unit = style.readable_unit("length", float(np.ptp(x))) if fit.over == "position" else (1.0, "s")
+    axes.plot(x * factor, np.asarray(data["friction"]), ".", color=style.GREY, ms=4, label="measured")
     fitted, error = np.asarray(data["fitted_friction"]), np.asarray(data["fitted_friction_error"])
-    axes.errorbar(x * factor, fitted, error, fmt=".", color=INK, ecolor=MARK, ms=3, lw=0.8, label="fitted, with its error")
-    axes.axhline(0.0, color=GREY, lw=0.6, zorder=0)
-    axes.set(xlabel=with_unit(fit.over, unit), ylabel="friction coefficient")
-    add_legend(figure, [axes], inside=ax)
+    axes.errorbar(
+        x * factor, fitted, error, fmt=".", color=style.INK, ecolor=style.MARK, ms=3, lw=0.8, label="fitted, with its error"
+    )
+    axes.axhline(0.0, color=style.GREY, lw=0.6, zorder=0)
+    axes.set(xlabel=style.with_unit(fit.over, unit), ylabel="friction coefficient")
+    style.add_legend(figure, [axes], inside=ax)
     return figure

@@ -14,20 +14,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.geometries import LINE
 from stribeck.plot import style
-from stribeck.plot.style import (
-    CONTACT,
-    DASHED,
-    FLUID,
-    GREY,
-    INK,
-    LEGEND_INCH,
-    MARK,
-    TINTS,
-    Axes,
-    Figure,
-    add_legend,
-    new_figure,
-)
+from stribeck.plot.style import Axes, Figure
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.units import InputError
 
@@ -38,28 +25,28 @@ GROUP_SYMBOLS = {"speed": r"$\lambda$", "load": r"$\bar F_N$", "roughness": r"$\
 
 # Solved lines: label, colour and width.
 SOLVED = {
-    "speed_at_5_percent_fluid": ("fluid carries 5 % of the load", CONTACT, 1.8),
-    "speed_at_half_fluid": ("fluid carries half the load", GREY, 1.2),
-    "speed_at_10_percent_contact_friction": ("asperities cause 10 % of the friction", FLUID, 1.8),
-    "speed_at_minimum": ("minimum of friction", MARK, 1.8),
+    "speed_at_5_percent_fluid": ("fluid carries 5 % of the load", style.CONTACT, 1.8),
+    "speed_at_half_fluid": ("fluid carries half the load", style.GREY, 1.2),
+    "speed_at_10_percent_contact_friction": ("asperities cause 10 % of the friction", style.FLUID, 1.8),
+    "speed_at_minimum": ("minimum of friction", style.MARK, 1.8),
 }
 OURS = "our formulas"
 
 # Lines of formulas: label, colour and dashes.
 FORMULAS = {
-    "formula_speed_at_5_percent_fluid": (OURS, INK, DASHED),
-    "formula_speed_at_half_fluid": (OURS, INK, DASHED),
-    "formula_speed_at_minimum": (OURS, INK, DASHED),
-    "formula_speed_boundary_to_mixed": ("end of boundary [BP], corrected", CONTACT, (0, (4, 1.5, 1, 1.5))),
-    "printed_speed_boundary_to_mixed": ("end of boundary [BP], as printed", CONTACT, (0, (1, 1.6))),
-    "printed_speed_at_minimum": ("minimum [BP], as printed", MARK, (0, (1, 1.6))),
+    "formula_speed_at_5_percent_fluid": (OURS, style.INK, style.DASHED),
+    "formula_speed_at_half_fluid": (OURS, style.INK, style.DASHED),
+    "formula_speed_at_minimum": (OURS, style.INK, style.DASHED),
+    "formula_speed_boundary_to_mixed": ("end of boundary [BP], corrected", style.CONTACT, (0, (4, 1.5, 1, 1.5))),
+    "printed_speed_boundary_to_mixed": ("end of boundary [BP], as printed", style.CONTACT, (0, (1, 1.6))),
+    "printed_speed_at_minimum": ("minimum [BP], as printed", style.MARK, (0, (1, 1.6))),
 }
 
 SPEED_FACTOR_BEYOND = 1e30  # Factor beyond the speeds of the grid at which a region ends that has no end
 
 # Lines of the planes in space: label, colour, dashes and width.
 IN_SPACE = {
-    **{name: (*style[:2], "-", style[2]) for name, style in SOLVED.items() if name != "speed_at_half_fluid"},
+    **{name: (*look[:2], "-", look[2]) for name, look in SOLVED.items() if name != "speed_at_half_fluid"},
     **{name: (*FORMULAS[name], 1.4) for name in ("formula_speed_at_5_percent_fluid", "formula_speed_at_minimum")},
 }
 
@@ -84,10 +71,10 @@ def plot_phase_diagram(
     """
     inputs, said = _caption(dataset, [float(_plane(dataset, load)["load"])])
     # An empty line leaves room for the third row of the legend.
-    figure, (axes,) = new_figure((9.0, 5.6), [[" "], *inputs], said, title=title or "Phase diagram", ax=ax)
+    figure, (axes,) = style.new_figure((9.0, 5.6), [[" "], *inputs], said, title=title or "Phase diagram", ax=ax)
     draw_phase_diagram(axes, dataset, load)
     if ax is None:
-        add_legend(figure, [axes], columns=3)
+        style.add_legend(figure, [axes], columns=3)
     return figure
 
 
@@ -102,12 +89,12 @@ def plot_phase_space(dataset: xarray.Dataset, *, title: str = "") -> Figure:
     """
     _plane(dataset, None)
     loads = dataset["load"].values
-    figure, (flat,) = new_figure((9.0, 6.4), *_caption(dataset, [loads[0], loads[-1]]), title=title or "Phase diagram")
-    bottom = flat.get_position().y0 + (LEGEND_INCH - 0.72) / figure.get_figheight()
+    figure, (flat,) = style.new_figure((9.0, 6.4), *_caption(dataset, [loads[0], loads[-1]]), title=title or "Phase diagram")
+    bottom = flat.get_position().y0 + (style.LEGEND_INCH - 0.72) / figure.get_figheight()
     flat.remove()
     axes = figure.add_axes((0.0, bottom, 0.97, 0.97 - bottom), projection="3d")
     draw_phase_space(axes, dataset)
-    add_legend(figure, [axes], columns=3)
+    style.add_legend(figure, [axes], columns=3)
     return figure
 
 
@@ -116,7 +103,7 @@ def draw_phase_diagram(axes: Axes, dataset: xarray.Dataset, load: float | None =
     plane = _plane(dataset, load)
     ends, y = plane.speed.values[[0, -1]], plane.roughness.values
     for regime, (left, right) in _regions(plane).items():
-        axes.fill_betweenx(y, left, right, color=TINTS[regime], lw=0, zorder=0)
+        axes.fill_betweenx(y, left, right, color=style.TINTS[regime], lw=0, zorder=0)
         shown = np.clip([left, right], *ends)
         _name_region(axes, regime, shown[0], shown[1], y)
     for name, (label, colour, width) in SOLVED.items():
@@ -125,7 +112,7 @@ def draw_phase_diagram(axes: Axes, dataset: xarray.Dataset, load: float | None =
         axes.plot(plane[name].values, y, color=colour, lw=1.2, ls=dashes, label=label, zorder=4.5)
     merging = plane.get("roughness_without_minimum")
     if merging is not None and y[0] <= (height := float(merging.values)) <= y[-1]:
-        axes.axhline(height, color=INK, lw=0.9, ls=(0, (7, 3, 1, 3)), label="above: no minimum of friction", zorder=2)
+        axes.axhline(height, color=style.INK, lw=0.9, ls=(0, (7, 3, 1, 3)), label="above: no minimum of friction", zorder=2)
     x_label, y_label = _label(plane, "speed"), _label(plane, "roughness")
     axes.set(xscale="log", yscale="log", xlabel=x_label, ylabel=y_label, xlim=ends, ylim=(y[0], y[-1]))
 
@@ -155,11 +142,11 @@ def draw_phase_space(axes: Any, dataset: xarray.Dataset) -> None:
     axes.set_yticks(shown, [f"{value:.3g}" for value in 10**shown])
     axes.view_init(elev=18, azim=-62)
     axes.set_box_aspect((1.5, 1.1, 0.95), zoom=1.12)
-    axes.tick_params(labelsize=9, colors=INK)
+    axes.tick_params(labelsize=9, colors=style.INK)
     axes.tick_params(axis="y", pad=8)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
-        axis.label.set(color=INK, size=10.5)
-        axis.pane.set(facecolor="white", edgecolor=GREY)
+        axis.label.set(color=style.INK, size=10.5)
+        axis.pane.set(facecolor="white", edgecolor=style.GREY)
 
 
 def _draw_layer(axes: Any, plane: xarray.Dataset, y: float, far: bool) -> None:
@@ -173,18 +160,18 @@ def _draw_layer(axes: Any, plane: xarray.Dataset, y: float, far: bool) -> None:
         known = np.isfinite(left)
         x = np.concatenate([left[known], right[known][::-1]])
         corners = np.column_stack([x, np.full(len(x), y), np.concatenate([z[known], z[known][::-1]])])
-        tint = {"facecolor": TINTS[regime], "alpha": 0.95 if far else 0.6, "lw": 0}
+        tint = {"facecolor": style.TINTS[regime], "alpha": 0.95 if far else 0.6, "lw": 0}
         axes.add_collection3d(Poly3DCollection([corners], zorder=order, **tint))
         room = right - left
         if not far and known.any() and np.nanmax(room) > 0:
             i = int(np.nanargmax(np.where((z > z[0]) & (z < z[-1]), room, -1.0)))
-            axes.text(0.5 * (left[i] + right[i]), y, z[i], regime, ha="center", color=GREY, style="italic", zorder=30)
+            axes.text(0.5 * (left[i] + right[i]), y, z[i], regime, ha="center", color=style.GREY, style="italic", zorder=30)
     for name, (label, colour, dashes, width) in IN_SPACE.items():
         fine = np.linspace(z[0], z[-1], SURFACE_POINTS)
         line = np.interp(fine, z, np.log10(plane[name].values))
         line = np.where((low <= line) & (line <= high), line, np.nan)
-        style = {"color": colour, "ls": dashes, "lw": width, "alpha": 0.7 if far else 1.0, "label": "" if far else label}
-        axes.plot(line, np.full(SURFACE_POINTS, y), fine, zorder=order + 1, **style)
+        look = {"color": colour, "ls": dashes, "lw": width, "alpha": 0.7 if far else 1.0, "label": "" if far else label}
+        axes.plot(line, np.full(SURFACE_POINTS, y), fine, zorder=order + 1, **look)
 
 
 def _draw_surface(axes: Any, planes: list[xarray.Dataset], depth: Array, name: str) -> None:
@@ -242,8 +229,8 @@ def _name_region(axes: Axes, regime: str, left: Array, right: Array, y: Array) -
         return
     i = int(np.argmax(room))
     place = math.sqrt(left[i] * right[i]), y[i]
-    box = {"facecolor": TINTS[regime], "lw": 0, "pad": 1.5}
-    axes.text(*place, regime, ha="center", va="center", size=10, style="italic", color=GREY, bbox=box, zorder=5)
+    box = {"facecolor": style.TINTS[regime], "lw": 0, "pad": 1.5}
+    axes.text(*place, regime, ha="center", va="center", size=10, style="italic", color=style.GREY, bbox=box, zorder=5)
 
 
 def _label(dataset: xarray.Dataset, name: str) -> str:

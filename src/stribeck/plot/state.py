@@ -15,18 +15,7 @@ from stribeck._types import Array
 from stribeck.contacts.contact import in_words, input_texts
 from stribeck.contacts.geometries import LINE
 from stribeck.plot import style
-from stribeck.plot.style import (
-    GREY,
-    INK,
-    MARK,
-    Axes,
-    Figure,
-    add_legend,
-    make_logarithmic,
-    new_figure,
-    readable_unit,
-    with_unit,
-)
+from stribeck.plot.style import Axes, Figure
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.fields import Field, Profile
@@ -49,7 +38,7 @@ SIDE_POINTS = 241  # Points along a side of the maps
 @style.picture()
 def plot_profile(solution: Solution, *, ax: Axes | None = None, title: str = "", notes: bool = True) -> Figure:
     """Draw gap and pressures along the contact, in SI units where the solution has a contact."""
-    figure, drawn = new_figure(SIZE, *caption_of(solution, notes), rows=2, title=title or "Gap and pressure", ax=ax)
+    figure, drawn = style.new_figure(SIZE, *caption_of(solution, notes), rows=2, title=title or "Gap and pressure", ax=ax)
     x = _positions(solution)
     fields = solution.profile(x)
     scales = scales_of_state(solution, float(np.abs(fields.gap).max()), "position $x$")
@@ -64,7 +53,7 @@ def plot_fields(fields: Profile, *, ax: Axes | None = None, title: str = "") -> 
     """Draw gap and pressures of a profile, in its units, as far as the pressures reach."""
     if len(fields.x) < 2:
         raise InputError(f"the profile has {len(fields.x)} positions; a picture needs two at least.")
-    figure, drawn = new_figure(SIZE, [], rows=2, title=title or "Gap and pressure", ax=ax)
+    figure, drawn = style.new_figure(SIZE, [], rows=2, title=title or "Gap and pressure", ax=ax)
     size = np.abs(fields.contact_pressure) + np.abs(fields.fluid_pressure)
     reach = 1.6 * float(np.abs(fields.x[size > 0.02 * size.max()]).max(initial=0.0)) or math.inf
     near = np.abs(fields.x) <= reach
@@ -90,7 +79,7 @@ def _draw_along(
         draw_gap(axes, solution, x, fields.gap, to_gap)
         axes.tick_params(labelbottom=False)
         axes.sharex(below)
-    add_legend(figure, drawn, columns=3, inside=not above)
+    style.add_legend(figure, drawn, columns=3, inside=not above)
 
 
 def scales_of_fields(fields: Any, x: Array, name: str) -> tuple[Scale, Scale, Scale]:
@@ -111,8 +100,8 @@ def _scales(units: tuple[float, float, float] | None, largest: list[float], name
     if units is None:
         return (1.0, f"{name[:-1]}/a$"), (1.0, r"gap $h/u_\mathrm{Hz}$"), (1.0, r"pressure $p/p_\mathrm{Hz}$")
     rows = zip(units, largest, ("length", "length", "pressure"), (name, "gap $h$", "pressure"), strict=True)
-    found = [(unit, text, *readable_unit(dimension, unit * most)) for unit, most, dimension, text in rows]
-    x, gap, pressure = ((unit * factor, with_unit(text, shown)) for unit, text, factor, shown in found)
+    found = [(unit, text, *style.readable_unit(dimension, unit * most)) for unit, most, dimension, text in rows]
+    x, gap, pressure = ((unit * factor, style.with_unit(text, shown)) for unit, text, factor, shown in found)
     return x, gap, pressure
 
 
@@ -120,18 +109,18 @@ def draw_pressures(axes: Axes, fields: Profile, x: Array, to_pressure: Scale, he
     """Draw the pressures along the contact, and that of Hertz if given."""
     factor, label = to_pressure
     if hertz is not None:
-        axes.plot(x, factor * hertz, color=GREY, lw=1.0, ls=(0, (2, 2)), label="dry smooth contact (Hertz)")
-    axes.plot(x, factor * fields.pressure, color=INK, lw=1.8, label="total pressure")
+        axes.plot(x, factor * hertz, color=style.GREY, lw=1.0, ls=(0, (2, 2)), label="dry smooth contact (Hertz)")
+    axes.plot(x, factor * fields.pressure, color=style.INK, lw=1.8, label="total pressure")
     axes.plot(x, factor * fields.contact_pressure, lw=1.6, **style.CONTACT_LINE)
     axes.plot(x, factor * fields.fluid_pressure, lw=1.6, **style.FLUID_LINE)
-    axes.axhline(0.0, color=GREY, lw=0.6, zorder=1)
+    axes.axhline(0.0, color=style.GREY, lw=0.6, zorder=1)
     axes.set_ylabel(label)
 
 
 def draw_gap(axes: Axes, solution: BaseSolution | None, x: Array, gap: Array, to_gap: Scale) -> None:
     """Draw the gap, and the roughness of a solution if it is visible beside it."""
     factor, label = to_gap
-    axes.plot(x, factor * gap, color=INK, lw=1.8, label="gap")
+    axes.plot(x, factor * gap, color=style.INK, lw=1.8, label="gap")
     contact, shown = None if solution is None else solution.contact, gap
     rms = 0.0 if solution is None else float(solution.groups.relative_roughness) * (1.0 if contact is None else contact.alpha)
     if rms > max(0.0, 0.03 * gap.min()):
@@ -139,13 +128,13 @@ def draw_gap(axes: Axes, solution: BaseSolution | None, x: Array, gap: Array, to
         symbol = r"$h_\mathrm{rms}/\alpha$" if contact is None else LINE.kept["roughness"].symbol
         axes.axhline(factor * rms, label=f"roughness {symbol}", **style.ROUGHNESS_LINE)
     if gap.min() > 0:
-        make_logarithmic(axes, "y", factor * shown)
+        style.make_logarithmic(axes, "y", factor * shown)
     axes.set_ylabel(label)
 
 
 def mark_failure(solution: BaseSolution, drawn: list[Axes]) -> None:
     """Write across the picture of a failed state that the state is no result."""
-    words: dict[str, Any] = {"ha": "center", "va": "center", "rotation": 20, "zorder": 10, "size": 22, "color": MARK}
+    words: dict[str, Any] = {"ha": "center", "va": "center", "rotation": 20, "zorder": 10, "size": 22, "color": style.MARK}
     for axes in () if solution.outcome.ok else drawn:
         axes.text(0.5, 0.5, "not converged", transform=axes.transAxes, **words)
 
@@ -198,7 +187,7 @@ def plot_point_solution(
     if colours == "interference" and solution.contact is None:
         raise InputError("colours = 'interference' needs a film thickness in metres; solve a PointContact instead of Groups.")
     caption, headline = caption_of(solution, notes), title or "Film and pressure of a ball"
-    figure, drawn = new_figure((10.0, 8.6), *caption, rows=2, columns=2, title=headline, ax=ax)
+    figure, drawn = style.new_figure((10.0, 8.6), *caption, rows=2, columns=2, title=headline, ax=ax)
     if drawn[1:]:
         drawn[0].get_gridspec().update(right=0.91, wspace=0.42, hspace=0.18)  # type: ignore[union-attr]
     along = np.linspace(-HALF_SIDE, HALF_SIDE, SIDE_POINTS)
@@ -211,12 +200,12 @@ def plot_point_solution(
     unit = scales[0][0]
     turn = np.linspace(0, 2 * math.pi, 181)
     for axes in drawn[:2]:
-        axes.plot(unit * np.cos(turn), unit * np.sin(turn), color=GREY, lw=0.9, ls=(0, (2, 2)))
+        axes.plot(unit * np.cos(turn), unit * np.sin(turn), color=style.GREY, lw=0.9, ls=(0, (2, 2)))
         axes.set_xlabel("" if drawn[1:] else scales[0][1])
     r, angle = solution.minimum_radius, solution.minimum_angle
     if r > 0.02:
         x, y = r * math.cos(angle) * unit, r * math.sin(angle) * unit
-        drawn[0].plot([x, x], [y, -y], ls="", marker="o", ms=4.5, mfc="none", mec=MARK, mew=1.3)
+        drawn[0].plot([x, x], [y, -y], ls="", marker="o", ms=4.5, mfc="none", mec=style.MARK, mew=1.3)
     if drawn[1:]:
         _draw_cut(figure, drawn[2:], solution, scales)
     mark_failure(solution, drawn)
@@ -228,7 +217,7 @@ def plot_field(field: Field, *, ax: Axes | None = None, title: str = "") -> Figu
     """Draw film and pressure on the plane, in the units of the field."""
     if field.grid is None or not all(len(each) > 1 and np.ptp(np.diff(each)) < 1e-6 * np.ptp(each) for each in field.grid):
         raise InputError("this field is not on an evenly spaced grid; a picture needs one, as of field(x, x[:, None]).")
-    figure, drawn = new_figure((10.5, 4.6), [], columns=2, title=title or "Film and pressure", ax=ax)
+    figure, drawn = style.new_figure((10.5, 4.6), [], columns=2, title=title or "Film and pressure", ax=ax)
     scales = scales_of_fields(field, np.stack([np.abs(each).max() for each in field.grid]), "$x$")
     _draw_maps(figure, drawn, field, field.grid, scales)
     for axes in drawn:
@@ -248,7 +237,7 @@ def _draw_maps(
         _film_map(figure, drawn[0], field.gap * to_gap[0], extent, to_gap[1])
     else:
         drawn[0].imshow(light, origin="lower", extent=extent, interpolation="bilinear")
-        drawn[0].set_title(f"interference colours, refractive index {REFRACTIVE_INDEX:g}", size=9.5, color=INK)
+        drawn[0].set_title(f"interference colours, refractive index {REFRACTIVE_INDEX:g}", size=9.5, color=style.INK)
     for axes in drawn[1:]:
         pressure = field.pressure * to_pressure[0]
         most = float(np.abs(pressure).max()) or 1.0
@@ -256,7 +245,7 @@ def _draw_maps(
         image = axes.imshow(
             pressure, origin="lower", extent=extent, cmap="RdBu_r", vmin=-most, vmax=most, interpolation="bilinear"
         )
-        figure.colorbar(image, ax=axes, fraction=0.046, pad=0.02).set_label(f"total {to_pressure[1]}", size=9, color=INK)
+        figure.colorbar(image, ax=axes, fraction=0.046, pad=0.02).set_label(f"total {to_pressure[1]}", size=9, color=style.INK)
     for axes in drawn:
         axes.set_aspect("equal")
     drawn[0].set_ylabel(to_x[1].replace("x", "y", 1))
@@ -274,7 +263,7 @@ def _film_map(figure: Figure, axes: Axes, gap: Array, extent: tuple[float, float
         levels = np.geomspace(lowest, max(1.6 * middle, 1.5 * lowest), 12)
         axes.contour(gap, levels=levels, extent=extent, colors="white", linewidths=0.5, alpha=0.7)
     image = axes.imshow(gap, origin="lower", extent=extent, cmap="viridis", interpolation="bilinear", **scale)
-    figure.colorbar(image, ax=axes, fraction=0.046, pad=0.02).set_label(label, size=9, color=INK)
+    figure.colorbar(image, ax=axes, fraction=0.046, pad=0.02).set_label(label, size=9, color=style.INK)
 
 
 def _draw_cut(figure: Figure, drawn: list[Axes], solution: PointSolution, scales: tuple[Scale, Scale, Scale]) -> None:
@@ -287,4 +276,4 @@ def _draw_cut(figure: Figure, drawn: list[Axes], solution: PointSolution, scales
     for axes in drawn:
         axes.set_xlabel(f"{to_x[1]} on the middle line; fluid enters from the left")
         axes.set_xlim(x[0] * to_x[0], x[-1] * to_x[0])
-    add_legend(figure, drawn, columns=3)
+    style.add_legend(figure, drawn, columns=3)
