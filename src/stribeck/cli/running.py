@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from cyclopts import App, CycloptsError, MissingArgumentError, Parameter, UnusedCliTokensError
 
 import stribeck as sb
+from stribeck.cli import measured, solving, strokes, studies
 from stribeck.cli.exits import (
     EXIT_BAD_INPUT,
     EXIT_BROKEN_PIPE,
@@ -23,18 +24,6 @@ from stribeck.cli.exits import (
     prepare_streams,
     redirect_to_null,
 )
-from stribeck.cli.measured import (
-    bench_command,
-    compare_command,
-    experiment_command,
-    fit_command,
-    loop_command,
-    master_command,
-    next_command,
-)
-from stribeck.cli.solving import check_command, curve_command, figures_command, regimes_command, solve_command
-from stribeck.cli.strokes import leak_command, stroke_command
-from stribeck.cli.studies import explore_command, new_command, report_command, surface_command, sweep_command
 from stribeck.files.writing import reason_of
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
@@ -49,9 +38,11 @@ Exit codes: 0 success, 1 the solve failed or the output could not be written, 2 
 COMMANDS: dict[str, Callable[..., int]] = {
     command.__name__.removesuffix("_command"): command
     for command in (
-        *(new_command, check_command, solve_command, curve_command, regimes_command, figures_command, sweep_command),
-        *(surface_command, stroke_command, leak_command, bench_command, fit_command, loop_command, next_command),
-        *(compare_command, master_command, experiment_command, report_command, explore_command),
+        *(studies.new_command, solving.check_command, solving.solve_command, solving.curve_command, solving.regimes_command),
+        *(solving.figures_command, studies.sweep_command, studies.surface_command, strokes.stroke_command),
+        *(strokes.leak_command, measured.bench_command, measured.fit_command, measured.loop_command, measured.next_command),
+        *(measured.compare_command, measured.master_command, measured.experiment_command, studies.report_command),
+        studies.explore_command,
     )
 }
 

@@ -18,24 +18,8 @@ from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, Regime, regime_of
-from stribeck.explorer.curves import (
-    FIRST_RTOL,
-    SOLVED_ROWS,
-    SOLVED_RTOL,
-    Curve,
-    Diagram,
-    Report,
-    axis_speeds,
-    curve_from_atlas,
-    decade_of_roughness,
-    decades_around,
-    diagram_from_atlas,
-    in_atlas,
-    round_up,
-    solved_curve,
-    solved_diagram,
-    transition_marks,
-)
+from stribeck.explorer import curves
+from stribeck.explorer.curves import Curve, Diagram, Report
 from stribeck.explorer.inputs.inputs import Inputs
 from stribeck.explorer.uploads import Measured
 from stribeck.quantities.units import InputError
@@ -109,19 +93,19 @@ class Answerer:
         """Return the answer at once, with the last curve where a new one has to be solved."""
         contact, definition, geometry = inputs.contact, inputs.case.definition, inputs.table.geometry
         solution = self._state(inputs)
-        marks = self._marks(contact, definition) if in_atlas(contact) else None
+        marks = self._marks(contact, definition) if curves.in_atlas(contact) else None
         places = [place for found in measured for place in found.places(contact, inputs.abscissa).tolist() if place > 0]
-        ends = (0.0, 0.0) if marks is None else decades_around(axis_speeds(contact, marks), places)
+        ends = (0.0, 0.0) if marks is None else curves.decades_around(curves.axis_speeds(contact, marks), places)
         found = self.curve(contact, definition, ends)
         curve, is_old = self._newest("curve", geometry, found)
         if marks is None:
-            ends = decades_around(_ends_of(curve, contact), places)
+            ends = curves.decades_around(_ends_of(curve, contact), places)
         curve_band = self._kept.get(("band", _key(contact), definition, inputs.known))
         if curve is not None:
             curve = replace(curve, marks={}) if is_old else curve if curve_band is None else replace(curve, band=curve_band)
         key = _diagram_key(inputs, _ends_of(found, contact) if marks is None else ends)
         if marks is not None:
-            self._keep(key, lambda: diagram_from_atlas(contact, definition, ends, decade_of_roughness(contact)))
+            self._keep(key, lambda: curves.diagram_from_atlas(contact, definition, ends, curves.decade_of_roughness(contact)))
         diagram, is_old_diagram = self._newest("diagram", geometry, self._kept.get(key))
         margins, is_old_margins = self._newest("margins", geometry, self._kept.get(_known_key("margins", inputs)))
         of_state = partial(checks_of, _subject(inputs, solution), "state")
@@ -152,30 +136,30 @@ class Answerer:
     def at_rest(self, inputs: Inputs, pins: Sequence[Inputs] = ()) -> list[Part]:
         """Return what is to be solved for inputs that rest, the first part at once, and for the pinned contacts."""
         geometry = inputs.table.geometry
-        curves = [partial(self._solve_curve, inputs, rtol) for rtol in (FIRST_RTOL[geometry], SOLVED_RTOL)]
+        drawn = [partial(self._solve_curve, inputs, rtol) for rtol in (curves.FIRST_RTOL[geometry], curves.SOLVED_RTOL)]
         slow = [partial(each, inputs) for each in (self._find_margins, self._find_spread, self._find_checks)]
-        slow += [partial(self._solve_curve, pin, SOLVED_RTOL) for pin in pins]  # a link has no curves, only contacts
+        slow += [partial(self._solve_curve, pin, curves.SOLVED_RTOL) for pin in pins]  # a link has no curves, only contacts
         diagram = partial(self._solve_diagram, inputs)
-        return [*curves, diagram, *slow] if SOLVED_ROWS[geometry].is_quick else [*curves, *slow, diagram]
+        return [*drawn, diagram, *slow] if curves.SOLVED_ROWS[geometry].is_quick else [*drawn, *slow, diagram]
 
     def curve(self, contact: Contact, definition: Definition, speeds: tuple[float, float]) -> Curve | None:
         """Return the curve of a contact between two speeds; outside the atlas the solved one, None until it is solved."""
-        if not in_atlas(contact):
+        if not curves.in_atlas(contact):
             found: Curve | None = self._kept.get(("solved", _key(contact), definition))
             return found
         marks = self._marks(contact, definition)
         key = ("curve", _key(contact), definition, speeds)
-        return self._keep(key, lambda: curve_from_atlas(contact, definition, speeds, marks))
+        return self._keep(key, lambda: curves.curve_from_atlas(contact, definition, speeds, marks))
 
     def _solve_curve(self, inputs: Inputs, rtol: float, report: Report) -> Iterator[None]:
         """Solve the curve of inputs outside the atlas, unless it is known as finely."""
         contact, definition = inputs.contact, inputs.case.definition
         key, why = ("solved", _key(contact), definition), ("why", _key(contact), definition)
         known: Curve | None = self._kept.get(key)
-        if in_atlas(contact) or why in self._kept or (known is not None and known.found.rtol <= rtol):
+        if curves.in_atlas(contact) or why in self._kept or (known is not None and known.found.rtol <= rtol):
             return
         try:
-            self._put(key, solved_curve(contact, definition, report, rtol))
+            self._put(key, curves.solved_curve(contact, definition, report, rtol))
         except (InputError, SolveError) as problem:
             if known is None:  # else the first one stays, with its error
                 self._put(why, str(problem))
@@ -184,14 +168,14 @@ class Answerer:
     def _solve_diagram(self, inputs: Inputs, report: Report) -> Iterator[None]:
         """Solve the map of inputs outside the atlas row by row."""
         contact, definition = inputs.contact, inputs.case.definition
-        if in_atlas(contact):
+        if curves.in_atlas(contact):
             return
         known: Curve | None = self.curve(contact, definition, (0.0, 0.0))
         speeds = _ends_of(known, contact)
         key = _diagram_key(inputs, speeds)
         if key in self._kept and self._kept[key].part == 1.0:
             return
-        for found in solved_diagram(contact, definition, speeds, decade_of_roughness(contact), report):
+        for found in curves.solved_diagram(contact, definition, speeds, curves.decade_of_roughness(contact), report):
             self._put(key, found)
             yield
 
@@ -217,7 +201,7 @@ class Answerer:
             return
         self._put(_known_key("spread", inputs), propagate(contact, errors, definition=definition))
         yield
-        speeds = axis_speeds(contact, self._marks(contact, definition)) if in_atlas(contact) else (0.0, 0.0)
+        speeds = curves.axis_speeds(contact, self._marks(contact, definition)) if curves.in_atlas(contact) else (0.0, 0.0)
         curve = self.curve(contact, definition, speeds)
         if curve is not None:
             band = friction_band(contact, errors, curve.speed[[0, -1]], definition, on_point=_parts(report))
@@ -250,7 +234,7 @@ class Answerer:
         return Pinned(pin.case.title, contact, definition, self.curve(contact, definition, speeds), state)
 
     def _marks(self, contact: Contact, definition: Definition) -> Any:
-        return self._keep(("marks", _key(contact), definition), lambda: transition_marks(contact, definition))
+        return self._keep(("marks", _key(contact), definition), lambda: curves.transition_marks(contact, definition))
 
     def _newest(self, kind: str, geometry: str, found: T | None) -> tuple[T | None, bool]:
         """Return what was found, or else the last of its kind; and whether it is stale."""
@@ -294,7 +278,7 @@ def _known_key(what: str, inputs: Inputs) -> tuple[Any, ...]:
 def _diagram_key(inputs: Inputs, speeds: tuple[float, float]) -> tuple[Any, ...]:
     """Return what a map depends on: all but speed and roughness, and its axes."""
     contact = inputs.contact
-    return ("diagram", _key(contact, "roughness"), inputs.case.definition, speeds, decade_of_roughness(contact))
+    return ("diagram", _key(contact, "roughness"), inputs.case.definition, speeds, curves.decade_of_roughness(contact))
 
 
 def _ends_of(curve: Curve | None, contact: Contact) -> tuple[float, float]:
@@ -314,6 +298,6 @@ def _places(solution: BaseSolution) -> Array:
         reach = max(1.6, 1.25 * float(np.abs(solution.x[pressure > 0.02 * pressure.max()]).max(initial=0.0)))
     assert solution.contact is not None
     a = solution.contact.hertz.half_width
-    reach = round_up(a * reach) / a
+    reach = curves.round_up(a * reach) / a
     nodes = solution.x[np.abs(solution.x) < reach]
     return np.unique(np.concatenate([np.linspace(-reach, reach, 241), nodes[:: 1 + len(nodes) // 150]]))

@@ -21,24 +21,14 @@ from nicegui import background_tasks, events
 
 from stribeck.cases.reading import load_case
 from stribeck.explorer import downloads as files
+from stribeck.explorer import uploads
 from stribeck.explorer.answer import Answer, Answerer
 from stribeck.explorer.charts import residual_chart
 from stribeck.explorer.inputs import choices, inputs, url
 from stribeck.explorer.inputs.inputs import History, Inputs
 from stribeck.explorer.page import UPDATING_TEXT, Page, Problems, form_of, parts_of
 from stribeck.explorer.table import without_rtol
-from stribeck.explorer.uploads import (
-    MEANINGS,
-    SCAN_ENDINGS,
-    Measured,
-    Scan,
-    fit_measured,
-    free_inputs,
-    read_file,
-    reading,
-    reading_for_fit,
-    with_scan,
-)
+from stribeck.explorer.uploads import Measured, Scan
 from stribeck.files.writing import MissingExtraError
 from stribeck.numerics.newton import ended_by
 from stribeck.quantities.units import InputError
@@ -226,23 +216,23 @@ class Tab:
 
     async def take_file(self, name: str, content: bytes, **asked: dict[str, str]) -> None:
         """Take a case, a measured curve or a surface that the browser sent; undo brings back the inputs before."""
-        kinds: dict[str, Any] = {".toml": "case"} | dict.fromkeys(SCAN_ENDINGS, "scan")
+        kinds: dict[str, Any] = {".toml": "case"} | dict.fromkeys(uploads.SCAN_ENDINGS, "scan")
         kind = kinds.get(PurePath(name.lower()).suffix, "measured")
         self.page.show(message=f"Reading {name} ...", failed=False)
         table = self.inputs.tables.get("fit", {})
         table |= {key: table.get(key, {}) | each for key, each in asked.items()}
         try:
-            found = await run(FILES, read_file, kind, name, content, self.inputs.contact, table)
+            found = await run(FILES, uploads.read_file, kind, name, content, self.inputs.contact, table)
             if kind == "case":
                 self.begin(found)
             elif isinstance(found, Scan):
-                self.change(with_scan(self.inputs, found))
+                self.change(uploads.with_scan(self.inputs, found))
                 self.message = found.report
             else:
                 self.file = name, content
                 self.show_measured([*(each for each in self.measured if each.file != name), *found])
                 self.page.show(mapping=None)
-                self.message = reading(found[0])
+                self.message = uploads.reading(found[0])
                 self.request()
         except InputError as problem:
             self.file = name, content
@@ -254,11 +244,11 @@ class Tab:
         """Ask what the columns of the last file are; False where it has none."""
         name, content = self.file
         try:
-            headers = await run(FILES, read_file, "headers", name, content, self.inputs.contact)
+            headers = await run(FILES, uploads.read_file, "headers", name, content, self.inputs.contact)
         except InputError:
             return False
         wrong = said.partition("; say which")[0].removesuffix(".")
-        self.page.show(mapping={"file": name, "said": wrong, "headers": headers, "meanings": MEANINGS})
+        self.page.show(mapping={"file": name, "said": wrong, "headers": headers, "meanings": uploads.MEANINGS})
         return len(headers) > 1
 
     async def read_columns(self, columns: dict[str, str], units: dict[str, str]) -> None:
@@ -268,8 +258,8 @@ class Tab:
     def show_fit(self) -> None:
         """Show what may be fitted to the measured curves of the last file."""
         last = self.measured[-1]
-        taken = reading_for_fit(self.inputs, last)
-        self.page.show(fitting={"file": last.file, "inputs": free_inputs(self.inputs), "taken": taken})
+        taken = uploads.reading_for_fit(self.inputs, last)
+        self.page.show(fitting={"file": last.file, "inputs": uploads.free_inputs(self.inputs), "taken": taken})
 
     async def fit(self, *free: str) -> None:
         """Fit inputs to the measured curves of the last file; undo brings back those before."""
@@ -281,7 +271,7 @@ class Tab:
                 raise Superseded
 
         try:
-            fitted = await run(self.threads.slow, fit_measured, now, last, step, free, watch=step)
+            fitted = await run(self.threads.slow, uploads.fit_measured, now, last, step, free, watch=step)
         except Superseded:
             self.page.show(message="The fit was given up, as the inputs changed.")
         except Exception as problem:
