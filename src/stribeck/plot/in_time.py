@@ -85,13 +85,8 @@ def _draw_points(axes: Axes, curve: BenchCurve) -> None:
     for k, name in enumerate(curve.curves):
         mine = curve.curve == k
         bars = np.where(np.isfinite(curve.half_width[mine]), curve.half_width[mine], 0.0)
-        look: dict[str, Any] = {
-            "fmt": "o",
-            "ms": 4.0,
-            "mfc": "white",
-            "capsize": 2.0,
-            "color": style.SERIES[k % len(style.SERIES)],
-        }
+        colour = style.SERIES[k % len(style.SERIES)]
+        look: dict[str, Any] = {"fmt": "o", "ms": 4.0, "mfc": "white", "capsize": 2.0, "color": colour}
         axes.errorbar(curve.speed[mine], curve.friction[mine], bars, label=name or "mean and 95 % interval", **look)
     style.make_logarithmic(axes, "x", curve.speed)
     if (curve.friction > 0).all():
