@@ -4,6 +4,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -19,6 +20,8 @@ FADING_POWER = 8  # Power of the distance with which grooves fade at the ends of
 
 EDGE_SHARPNESS = 0.16  # Height over which a worn flat goes over into the cylinder, over the depth of wear
 MAX_EXPONENT = 700.0  # Largest exponent that double precision holds
+
+_length = partial(Input, dimension="length")
 
 
 @dataclass(frozen=True)
@@ -58,9 +61,7 @@ class Cylinder(Shape):
     label: ClassVar[str] = "cylinder"
     cavitation: ClassVar[Cavitation] = Cavitation.NONE
 
-    radius: Input = Input(
-        label="radius of the cylinder", symbol="$R$", dimension="length", typical="10 mm", source="a rod", is_free=False
-    )
+    radius: Input = _length(label="radius of the cylinder", symbol="$R$", typical="10 mm", source="a rod", is_free=False)
 
     @property
     def name(self) -> str:  # type: ignore[override]
@@ -98,28 +99,22 @@ class Grooved(Shape):
     name: ClassVar[str] = "grooved"
     label: ClassVar[str] = "cylinder with grooves"
 
-    base_radius: Input = Input(
+    base_radius: Input = _length(
         label="radius of the cylinder with grooves",
         symbol="$R$",
-        dimension="length",
         typical="10 mm",
         source="a rod",
         optional=True,
         is_free=False,
     )
-    groove_depth: Input = Input(
-        label="depth of the grooves", symbol="$d$", dimension="length", typical="1 um", source="a honed or laser-cut surface"
+    groove_depth: Input = _length(
+        label="depth of the grooves", symbol="$d$", typical="1 um", source="a honed or laser-cut surface"
     )
-    groove_pitch: Input = Input(
-        label="pitch of the grooves", symbol="$l$", dimension="length", typical="50 um", source="a honed or laser-cut surface"
+    groove_pitch: Input = _length(
+        label="pitch of the grooves", symbol="$l$", typical="50 um", source="a honed or laser-cut surface"
     )
-    grooved_width: Input = Input(
-        label="width of the grooved strip",
-        symbol="$2B$",
-        dimension="length",
-        typical="1 mm",
-        source="a few widths of the contact",
-        is_free=False,
+    grooved_width: Input = _length(
+        label="width of the grooved strip", symbol="$2B$", typical="1 mm", source="a few widths of the contact", is_free=False
     )
     body: Profile | None = None
     reversed: bool = False
@@ -177,15 +172,11 @@ class Land(Shape):
     name: ClassVar[str] = "land"
     label: ClassVar[str] = "flat land with rounded edges"
 
-    land_width: Input = Input(
-        label="width of the land", symbol="$2b$", dimension="length", typical="0.4 mm", source="the worn trace of a rod seal"
+    land_width: Input = _length(
+        label="width of the land", symbol="$2b$", typical="0.4 mm", source="the worn trace of a rod seal"
     )
-    edge_radius: Input = Input(
-        label="radius of the edges of the land",
-        symbol="$r$",
-        dimension="length",
-        typical="1 mm",
-        source="a worn edge under a microscope",
+    edge_radius: Input = _length(
+        label="radius of the edges of the land", symbol="$r$", typical="1 mm", source="a worn edge under a microscope"
     )
     reversed: bool = False
 
@@ -239,12 +230,8 @@ class Lip(Shape):
         source="shaft seals, ISO 6194",
         highest=0.5 * math.pi,
     )
-    tip_radius: Input = Input(
-        label="radius of the tip of the lip",
-        symbol="$r$",
-        dimension="length",
-        typical="50 um",
-        source="a moulded or trimmed edge",
+    tip_radius: Input = _length(
+        label="radius of the tip of the lip", symbol="$r$", typical="50 um", source="a moulded or trimmed edge"
     )
     reversed: bool = False
 
@@ -277,12 +264,8 @@ class Worn(Shape):
     name: ClassVar[str] = "worn"
     label: ClassVar[str] = "cylinder worn flat"
 
-    worn_radius: Input = Input(
-        label="radius of the cylinder", symbol="$R$", dimension="length", typical="10 mm", source="a rod", is_free=False
-    )
-    wear_depth: Input = Input(
-        label="depth of wear", symbol="$w$", dimension="length", typical="2 um", source="a run-in slider"
-    )
+    worn_radius: Input = _length(label="radius of the cylinder", symbol="$R$", typical="10 mm", source="a rod", is_free=False)
+    wear_depth: Input = _length(label="depth of wear", symbol="$w$", typical="2 um", source="a run-in slider")
     reversed: bool = False
 
     def gap(self, x: Array) -> Array:
