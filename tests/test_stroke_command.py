@@ -37,6 +37,7 @@ def test_the_answer_is_friction_beside_steady_sliding_and_files_hold_the_rest(ca
     assert found["definition"] == "balanced" and "friction on the way out, balanced" in answer.out
     assert found["central_film_thickness"][-1] == pytest.approx(state.to_dict()["central_film_thickness"], rel=0.15)  # it lags
     assert found["units"]["central_film_thickness"] == "m" and "central_gap" not in found
+    assert (found["units"]["largest_speed"], found["units"]["mean_friction"]) == ("m/s", "1")
     # The film of a ramp of three half-widths lags behind the speed, so that there is more friction than in steady sliding.
     path, friction = np.array(found["position"]), np.array(found["friction"])
     mean = np.trapezoid(friction, path) / np.ptp(path)

@@ -73,7 +73,9 @@ def stroke_command(
         progress.writes = True
 
         def content() -> dict[str, Any]:
-            return {"title": loaded.title} | found.to_dict() | steady
+            told = found.to_dict()
+            units = {name: "1" for name in steady if not name.endswith("_error")} | {"largest_speed": "m/s"}
+            return {"title": loaded.title} | told | steady | {"units": told["units"] | units}
 
         said = partial(_lines, found, steady, loaded.title, verbose)
         return outputs.finish(found, said, loaded.title, content=content, data=output or [], case=loaded)
