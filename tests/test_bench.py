@@ -451,6 +451,8 @@ def test_an_arm_without_a_unit_is_shown_with_the_one_it_was_read_in(written, cap
     rows = stepped(np.random.default_rng(3), 40, speeds=SPEEDS[::2], amplitude=0.005)
     path = written(text_of(rows, "Time [s];Speed [mm/s];Fz [N];Torque [mN m]"))
     assert "arm 20 m of the case" in call(capsys, "bench", path, "--arm", "20").out
+    [taken] = json.loads(call(capsys, "bench", path, "--arm", "20", "--json").out)["taken"]
+    assert "arm 20 m of the case" in taken
     assert "arm 20 mm of the case" in str(sb.bench.read(path, arm=0.02))
 
 

@@ -113,12 +113,12 @@ class BenchCurve(Exported, Told, ByValue):
         return f"{points}{several} from {rows} of {files}, {kept} of them kept{doubt}."
 
     def to_dict(self) -> dict[str, Any]:
-        """Return points, notes and inputs, ready for JSON."""
+        """Return points, inputs, notes and how columns were read, ready for JSON."""
         columns = {name: getattr(self, name).tolist() for name in (*POINTS, "error")}
         of = {"paths": list(self.paths), "curves": list(self.curves), "inputs": list(self.inputs)}
         units = {name: INPUTS[name].unit for each in self.inputs for name in each} | {"error": "1"}
         units |= {name: each.unit for name, each in self._words.items() if name in POINTS and each.unit is not None}
-        told = {"notes": list(self.notes), "units": units}
+        told = {"taken": list(self.taken), "notes": list(self.notes), "units": units}
         return of | {"curve": [self.curves[k] for k in self.curve]} | columns | told
 
     def _labelled(self) -> Labelled:
