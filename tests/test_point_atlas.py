@@ -70,6 +70,8 @@ def test_what_balls_do_not_have_is_refused_by_name():
         ("has no flux_gap", lambda: sb.atlas.flux_gap(ball)),
         ("wetted_radius = 50 belongs to a ball", lambda: sb.atlas.friction(line, wetted_radius=50)),
         ("must be above 1", lambda: sb.atlas.friction(ball, wetted_radius=0.5)),
+        # A film that is far from the contact has 10 % more friction up to there, 38 % more up to 1.3.
+        ("holds no fields to integrate", lambda: sb.atlas.friction(ball, wetted_radius=2.0)),
     ):
         with pytest.raises(sb.InputError, match=said):
             ask()
@@ -215,6 +217,18 @@ def test_fits_begin_on_it_where_it_holds(cavitation):
     found = sb.fit(data, contact.replace(boundary_friction=0.6), free=["boundary_friction"], intervals=False)
     assert found["boundary_friction"].value == pytest.approx(0.7, rel=5e-3)
     assert found.solver_shift < np.inf  # the solver has replaced the table at the end
+
+
+def test_the_next_runs_of_a_ball_that_rolls_have_its_friction():
+    """They had that of pure sliding."""
+    contact = ball(slide_to_roll=0.2)
+    speeds = contact.speed * np.array([0.3, 0.5, 1.0, 2.0])
+    curve = sb.stribeck_curve(contact, speed=speeds, method="atlas")
+    ones = np.zeros(4, dtype=int), ("a",), ({},), np.arange(2, 6)
+    data = sb.results.Measurements("speed", speeds, np.asarray(curve.friction), None, *ones)
+    found = sb.fit(data, contact.replace(boundary_friction=0.69), free=["boundary_friction"], intervals=False)
+    [run] = sb.next_runs(found, 1, speeds=speeds[2:3], loads=[contact.load]).runs
+    assert run.friction == pytest.approx(float(curve.friction[2]), rel=1e-2)
 
 
 def test_uncertainties_are_sampled_on_it():

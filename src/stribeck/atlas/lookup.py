@@ -9,14 +9,15 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.atlas.grid import MAX_L_OF_HEAVY, MAX_ROUGHNESS_OF_HEAVY
 from stribeck.atlas.table import FRICTION_RADIUS
-from stribeck.atlas.tables import table_for, within
-from stribeck.contacts.cut_off import far_film
+from stribeck.atlas.tables import covers, table_for, within
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.cut_off import FAR_FILM_MIN_RADIUS, far_film
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Geometry, Groups
 from stribeck.numerics.dual import Dual, chained, value_of
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.units import InputError, checked_kind
+from stribeck.quantities.units import InputError, checked_kind, show
 from stribeck.solids import hertz
 
 # Names of functions in the tables
@@ -119,8 +120,20 @@ def friction_terms(groups: Groups, inputs: Mapping[str, Any], definition: Defini
     return reading.contact, viscous_of(groups, reading, inputs, definition)
 
 
+def has_friction(contact: Contact, groups: Groups) -> bool:
+    """Return whether the atlas has the friction of a contact at groups of its own or at another speed."""
+    liquid = RULES[groups.geometry].motion(contact).get("wetted_radius", math.inf)
+    return bool(contact.friction_of_asperities.is_constant and liquid >= FAR_FILM_MIN_RADIUS and covers(groups))
+
+
 def viscous_of(groups: Groups, reading: FrictionReading, inputs: Mapping[str, Any], definition: Definition) -> Any:
     """Return the viscous friction of what was read, by what the friction rule takes beside states."""
+    liquid = value_of(inputs.get("wetted_radius", math.inf))
+    if np.any(np.less(liquid, FAR_FILM_MIN_RADIUS)):
+        raise InputError(
+            f"wetted_radius = {show(liquid)} Hertz radii; the atlas holds no fields to integrate up to there, but the "
+            f"friction of films that end far from the contact: from {FAR_FILM_MIN_RADIUS:g} on. Use solve."
+        )
     arrays = {name: flat(groups, value) for name, value in inputs.items()} | {"far": far_film(groups.model)}
     return RULES[groups.geometry].viscous(reading.parts, reading.speed, reading.load, arrays, definition)
 

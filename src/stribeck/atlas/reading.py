@@ -46,7 +46,7 @@ ARGUMENTS = {
     Definition of the viscous friction, theory.md, section 6.""",
     "slide_to_roll": "float\n    Slide-to-roll ratio of a ball [-].",
     "wetted_radius": """float or ndarray
-    Radius of the disc of liquid around a ball, above 1 [a]; infinite where the whole ball is immersed.""",
+    Radius of the disc of liquid around a ball, from 5 on [a]; infinite where the whole ball is immersed.""",
 }
 RAISES = "InputError\n    If a state is outside the box of its table, or an argument is wrong."
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from stribeck import atlas
 from stribeck._types import Array
+from stribeck.atlas.lookup import has_friction
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction_rules import RULES
 from stribeck.curves.sensitivities import atlas_sensitivities, friction_sensitivities
@@ -230,9 +231,9 @@ def _places(
 def _row(fit: Fit, curve: str, contact: Contact) -> tuple[Array, float] | None:
     """Return the derivatives of ln(friction) with respect to the fitted inputs, and the friction; None if unsolvable."""
     try:
-        if bool(atlas.covers(contact.groups)):
-            slopes = atlas_sensitivities(contact, fit.definition)
-            friction = float(atlas.friction(contact.groups, contact.boundary_friction, contact.beta, fit.definition))
+        if has_friction(contact, contact.groups):
+            slopes, motion = atlas_sensitivities(contact, fit.definition), RULES[contact.groups.geometry].motion(contact)
+            friction = float(atlas.friction(contact.groups, contact.boundary_friction, contact.beta, fit.definition, **motion))
         else:
             solution, slopes = friction_sensitivities(contact, rtol=STATE_RTOL, definition=fit.definition)
             friction = solution.friction(definition=fit.definition).total

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stribeck import atlas
 from stribeck._types import Array
+from stribeck.atlas.lookup import has_friction
 from stribeck.atlas.tables import table_for
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS, Definition, FrictionArray
@@ -120,7 +120,7 @@ def _group_per_unit(contact: Contact, name: str) -> float:
 
 def in_atlas(contact: Contact) -> bool:
     """Return whether the atlas covers the contact law, the load and the roughness of a contact, and has its friction."""
-    return contact.friction_of_asperities.is_constant and bool(atlas.covers(replace(contact.groups, speed=0.0)))
+    return has_friction(contact, replace(contact.groups, speed=0.0))
 
 
 def transition_marks(contact: Contact, definition: Definition) -> Marks:
