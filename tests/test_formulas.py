@@ -361,7 +361,8 @@ REFUSED = [
     ),
     ("uniform.friction", {"definition": "paper"}, "definition = 'paper'"),
     ("point.friction.viscous_friction_smooth", {"definition": "paper"}, "definition = 'paper'"),
-    ("point.friction.friction", {"wetted_radius": 0.5}, "wetted_radius = 0.5; in Hertz radii it must exceed 1"),
+    # In a drop of two radii the law of the smooth ball is 16 % off, with 2.5 % stated.
+    ("point.friction.friction", {"wetted_radius": 2.0}, "wetted_radius = 2.0; in Hertz radii it must be 5 or more"),
     ("point.regressions.de_vicente", {"slope": 0}, "slope = 0; it is a/R and must be positive"),
 ]
 """Options that formulas refuse, and what they say."""

@@ -84,7 +84,7 @@ ERRORS: dict[str, str] = {
     "viscous": "If the definition is unknown.",
     "slope": "If the slope is not positive.",
     "share": "If the share is not between 0 and 1.",
-    "wetted_radius": "If the wetted radius lies in the contact.",
+    "wetted_radius": "If the wetted radius is below 5 Hertz radii.",
 }
 """When a formula refuses an argument."""
 

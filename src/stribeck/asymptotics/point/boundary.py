@@ -27,7 +27,7 @@ from stribeck._types import Array
 from stribeck.asymptotics.documentation import described
 from stribeck.asymptotics.formula import Limit, Value, checked_load, fluid_number, formula
 from stribeck.asymptotics.point.rest import CATALAN
-from stribeck.contacts.cut_off import COUETTE, FULL_FAR_FILM, POISEUILLE, far_logarithms, log_cut_offs
+from stribeck.contacts.cut_off import COUETTE, FAR_FILM_MIN_RADIUS, FULL_FAR_FILM, POISEUILLE, far_logarithms, log_cut_offs
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
 from stribeck.numerics.fourier_panels import lobatto
@@ -258,9 +258,10 @@ def far_integral(slope: Value, wetted_radius: Value | None = None, film: Value =
     radius: Value = math.inf
     if wetted_radius is not None:
         radius = real_array("wetted_radius", wetted_radius)
-        if not np.all((radius > 1) & (radius < math.inf)):
+        if not np.all((radius >= FAR_FILM_MIN_RADIUS) & (radius < math.inf)):
             raise InputError(
-                f"wetted_radius = {show(wetted_radius)}; in Hertz radii it must exceed 1, the edge of the contact."
+                f"wetted_radius = {show(wetted_radius)}; in Hertz radii it must be {FAR_FILM_MIN_RADIUS:g} or more, where the "
+                "film does not feel the contact. Use solve for smaller drops."
             )
     with np.errstate(divide="ignore"):
         logarithms = log_cut_offs(np.asarray(slope, dtype=float), radius)
