@@ -669,6 +669,13 @@ def test_a_line_gives_an_input_with_its_error_or_is_noted_as_not_used(subtests, 
             assert f"The load {what!r} of row 1 was not used: it is no number with a unit." in found.notes
 
 
+def test_a_line_below_the_header_says_an_input(subtests, written):
+    head, *rows = table("speed [mm/s];COF", speed, friction).splitlines()
+    for lines in (["Load: 2 N"], ["Step 1", "Load: 2 N"], ["mm/s;-", "Load: 2 N;"]):
+        with subtests.test(lines=lines):
+            assert read(written("\n".join([head, *lines, *rows]))).inputs == ({"load": 2.0},)
+
+
 def test_a_line_between_the_rows_is_not_of_those_above_it(subtests, written):
     head, *rows = table("speed [mm/s];COF", speed, friction).splitlines()
     force = head.replace("COF", "Fx [N]")

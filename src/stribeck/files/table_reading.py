@@ -123,6 +123,7 @@ def _read(
         reads = f"; header_row = {at} in [fit] reads it" if expected == HEADER_ADVICE else ""
         notes += (f"A table of {other.rows} rows under another header, in row {at}, left out{reads}.",)
     inside.update(i for each in same for i in range(each.first, each.below))
+    below_names = {i for each in same for i in range(each.at + 1, each.below)}  # units, and lines such as Load: 2 N
     taken = set(numbers)
     if taken & hidden:
         filtered = rows_listed(sorted(taken & hidden))
@@ -154,7 +155,7 @@ def _read(
         between=tuple(
             (line.number, line.text)
             for i, line in enumerate(lines[heading.at + 1 :], heading.at + 1)
-            if line.comment or (line.number not in taken and i not in inside)
+            if line.comment or (line.number not in taken and (i not in inside or i in below_names))
         ),
         unread=(*left_out, *(lines[other.at].number for other in tables)),
         notes=notes,
