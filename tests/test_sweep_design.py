@@ -102,6 +102,14 @@ def test_the_fingerprint_is_that_of_the_states_and_not_of_the_comments(tmp_path)
 GROUPS = "[groups]\nload = 0.1\nroughness = 1e-3\n"
 
 
+def test_a_store_of_groups_is_found_again_whatever_the_classes_of_their_model_are_called(tmp_path, monkeypatch):
+    text = GROUPS + "[vary]\nspeed = { range = [1e-6, 1e-4], points = 2 }\n"
+    base = load(tmp_path, text).fingerprint
+    monkeypatch.setattr(type(sb.Groups(1e-5, 0.1, 1e-3).model), "__repr__", lambda self: "another")
+    ball = load(tmp_path, text.replace("[groups]", "[groups]\ngeometry = 'point'"))
+    assert load(tmp_path, text).fingerprint == base != ball.fingerprint
+
+
 RANGE, KIND = "speed = {{ range = {}, points = 3 }}", '\n[design]\nkind = "{}"\n'
 # What stands behind GROUPS and [vary], and what is said.
 WRONG_VARY = [

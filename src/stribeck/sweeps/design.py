@@ -291,8 +291,8 @@ class SweepDesign(Tabled, Shown, States):
     @cached_property
     def fingerprint(self) -> str:
         """Identity of this design: its states and settings, without comments in its file."""
-        # The parts of all contacts are those of the first.
-        physics = self.physics if self.contacts is None else self.contacts[0]
+        # The parts of all contacts are those of the first; groups have those of the article.
+        physics = (self.contact_law, self.physics["geometry"]) if self.contacts is None else self.contacts[0]
         parameters = {} if self.contact_law is None else self.contact_law.parameters
         settings = [
             sorted(self.inputs),
