@@ -219,6 +219,17 @@ def test_fits_begin_on_it_where_it_holds(cavitation):
     assert found.solver_shift < np.inf  # the solver has replaced the table at the end
 
 
+@pytest.mark.quick
+def test_the_error_of_a_curve_off_it_counts_what_the_end_of_the_liquid_leaves_out():
+    """Of the table alone it was a sixteenth of that, and an eighth of how far the friction is off."""
+    contact = ball(speed=1.0)
+    drop = contact.replace(wetted_radius=5.0 * contact.hertz.half_width)
+    speeds = [contact.speed, 2 * contact.speed]
+    whole, read = (sb.stribeck_curve(each, speed=speeds, method="atlas") for each in (contact, drop))
+    assert read.friction.error[0] > 0.03 * read.friction[0]
+    assert np.allclose(whole.friction.error, BALL.error * np.abs(whole.friction))
+
+
 def test_the_next_runs_of_a_ball_that_rolls_have_its_friction():
     """They had that of pure sliding."""
     contact = ball(slide_to_roll=0.2)

@@ -9,7 +9,9 @@ import numpy as np
 
 from stribeck import atlas
 from stribeck._types import Array
+from stribeck.atlas.lookup import read_friction, viscous_of
 from stribeck.atlas.tables import TableRow, table_for
+from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.curves.coordinate import Coordinate
@@ -74,9 +76,13 @@ class AtlasSource(Source):
 
     def _terms(self, groups: Groups, read: Readings, *coefficients: Any) -> Array:
         """Return both parts of the friction of groups, their sum and its error, shape (n, 4)."""
-        contact, viscous = self._friction(groups, coefficients)
-        total = contact + viscous
-        return np.stack([contact, viscous, total, self.rtol * np.abs(total)], axis=1)
+        boundary_friction, beta, definition = coefficients
+        reading, inputs = read_friction(groups, definition), self.inputs(groups.load, beta)
+        contact = boundary_friction * self.sliding * reading.contact
+        viscous = viscous_of(groups, reading, inputs, definition)
+        total, model = contact + viscous, {"model": groups.model, "far": far_film(groups.model)}
+        far = RULES[self.table.geometry].far_error(reading.parts, groups.speed, groups.load, inputs | model)
+        return np.stack([contact, viscous, total, self.rtol * np.abs(total) + far], axis=1)
 
     def _friction(self, groups: Groups, coefficients: Any, slopes: int = 0) -> tuple[Any, Any]:
         """Return both parts of the friction, with derivatives by the groups if wanted."""
