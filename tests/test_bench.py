@@ -447,6 +447,19 @@ def test_the_table_bench_has_what_the_command_takes_as_options(written, tmp_path
     assert found.curves == ("x",) and np.all(found.viscosity == sb.fluids.iso_vg(46, temperature=40).viscosity)
 
 
+def test_loads_per_length_separate_the_curves_of_a_cylinder(written, tmp_path):
+    rng = np.random.default_rng(6)
+    rows = [
+        f"{speed};{load / speed**0.3 * (1 + 0.01 * rng.normal()):.5f};{1e-3 * load * (1 + 0.002 * rng.normal()):.5f}"
+        for load, speed in np.repeat([(30, 1), (30, 10), (60, 1), (60, 10)], 20, axis=0)
+    ]
+    found = sb.bench.read(written("\n".join(["Speed [mm/s];COF [%];Load [N/mm]", *rows]).replace(";", "\t")))
+    assert [each["load_per_length"] for each in found.inputs] == [30.0, 60.0] and len(found) == 4
+    found.to_csv(tmp_path / "curve.csv")
+    read = sb.read_measurements(tmp_path / "curve.csv", sb.load_case(EXAMPLE.with_name("pdms_fit.toml")).fit)
+    assert [each["load"] for each in read.inputs] == [30.0, 60.0] and read.friction == pytest.approx(found.friction)
+
+
 def test_an_arm_without_a_unit_is_shown_with_the_one_it_was_read_in(written, capsys):
     rows = stepped(np.random.default_rng(3), 40, speeds=SPEEDS[::2], amplitude=0.005)
     path = written(text_of(rows, "Time [s];Speed [mm/s];Fz [N];Torque [mN m]"))

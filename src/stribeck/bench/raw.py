@@ -17,7 +17,7 @@ from stribeck.files.table_reading import read_table
 from stribeck.files.text_table import TextTable
 from stribeck.fits.columns import abscissa_of, columns_of, curve_labels, has_column, known_name, with_errors_named
 from stribeck.fits.repeats import FEWEST, errors_of_means
-from stribeck.fits.rig import column_of, measured, prepared, temperatures
+from stribeck.fits.rig import PATTERNS, column_of, levels_of, measured, prepared, temperatures
 from stribeck.fits.stated import inputs_said
 from stribeck.fits.strokes import emptied, without_codes, without_codes_of_forces
 from stribeck.fits.values import LARGEST_FRICTION, MADE_FRICTION, checked, numbers, what_may_be_wrong
@@ -108,10 +108,13 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
     if not there.all():
         missing = [number for number, kept in zip(table.numbers, there, strict=True) if not kept]
         notes.append(f"{len(missing)} row{'s' * (len(missing) > 1)} without a value left out: {rows_listed(missing)}.")
-    curve, curves = _curves(table, columns, settings)
+    per_length = None if "load" in columns else _load_per_length(table)
+    curve, curves = _curves(table, columns, settings, {} if per_length is None else {"load_per_length": per_length[0]})
     labels = table.column(run) if run else ()
     kept = np.flatnonzero(there)
     parts = [f"{show(names[0])} as {meaning.replace('_', ' ')}" for meaning, names in columns.items() if names[0] in written]
+    if per_length is not None:
+        parts.append(f"{show(per_length[1])} as load per length")
     if warm is not None:
         parts.append(f"{show(warm[1])} as temperature")
     of_case, said, unused = _said(table, asked, path.name, [*columns, *(["temperature"] if warm is not None else [])])
@@ -307,13 +310,26 @@ def _going_on(table: TextTable, name: str, time: Array, step: int | None) -> Arr
     return found
 
 
+def _load_per_length(table: TextTable) -> tuple[Array, str] | None:
+    """Return the settings [N/m] of the load on a cylinder in each row, and the header of its column; None without one."""
+    for name in filter(None, table.header):
+        if is_named(name, rf"(?:line(?:ar)? )?(?:{PATTERNS['normal_force']})") and has_dimension(
+            table.unit(name) or "-", "load"
+        ):
+            loads = np.abs(table.numbers_of(name, lambda unit, where: si_factor(unit, "load", where)))
+            loads[~(loads > 0)] = np.nan
+            loads[loads > 0] = levels_of(loads[loads > 0])
+            return loads, name
+    return None
+
+
 def _curves(
-    table: TextTable, columns: dict[str, list[str]], settings: FitSettings
+    table: TextTable, columns: dict[str, list[str]], settings: FitSettings, others: dict[str, Array]
 ) -> tuple[Indices, tuple[tuple[str, dict[str, float]], ...]]:
     """Return the curve of each row, and name and inputs of each curve."""
     given = [name for name in columns if name in settings.inputs.quantities and name not in ("speed", "boundary_friction")]
     labels = curve_labels(table, columns)
-    series = {name: checked(table, columns[name][0], name, settings) for name in given}
+    series = others | {name: checked(table, columns[name][0], name, settings) for name in given}
     keys: dict[tuple[str, tuple[tuple[str, float], ...]], int] = {}
     found = []
     last: dict[str, float] = {}

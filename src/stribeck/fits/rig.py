@@ -176,7 +176,7 @@ def _levelled(
     sizes = np.abs(values)
     still = sizes <= (ROLLING_RATIO if meaning == "slide_to_roll" else 0.0)
     column = np.where(still, 0.0 if meaning == "slide_to_roll" else np.nan, sizes)
-    column[column > 0] = _levels(column[column > 0])
+    column[column > 0] = levels_of(column[column > 0])
     apart = (sizes > 0) & np.isnan(column)
     without = ""
     if apart.any():
@@ -202,7 +202,7 @@ def _levelled(
     return table.without(name).with_column(f"{made} [N]" if unit else made, _texts(column)), (sentence,)
 
 
-def _levels(values: Array) -> Array:
+def levels_of(values: Array) -> Array:
     """Return the setting that each measured value belongs to: the median of those that lie together; NaN near none."""
     ordered = np.sort(values)
     groups = np.split(ordered, np.flatnonzero(ordered[1:] > NEXT_LEVEL * ordered[:-1]) + 1) if len(values) else []
