@@ -460,6 +460,15 @@ def test_loads_per_length_separate_the_curves_of_a_cylinder(written, tmp_path):
     assert [each["load"] for each in read.inputs] == [30.0, 60.0] and read.friction == pytest.approx(found.friction)
 
 
+def test_a_column_of_words_that_is_not_used_is_noted(written):
+    rows = "".join(f"{t};{1 + t // 4 % 3};{0.5 - 0.01 * t:.2f};{'water' if t < 12 else 'oil'};a\n" for t in range(24))
+    path = written("Time [s];Speed [mm/s];COF;Lubricant;Operator\n" + rows)
+    words = "'Lubricant' was not used, though its rows differ, as 'water' and 'oil'; curve = 'Lubricant' in [bench.columns]"
+    assert note_of(sb.bench.read(path), words)
+    curves = sb.bench.read(path, written("[bench.columns]\ncurve = 'Lubricant'\n", "rig.toml"))
+    assert curves.curves == ("water", "oil") and not any("Lubricant" in note for note in curves.notes)
+
+
 def test_an_arm_without_a_unit_is_shown_with_the_one_it_was_read_in(written, capsys):
     rows = stepped(np.random.default_rng(3), 40, speeds=SPEEDS[::2], amplitude=0.005)
     path = written(text_of(rows, "Time [s];Speed [mm/s];Fz [N];Torque [mN m]"))

@@ -11,7 +11,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import is_named, rows_listed
+from stribeck.files.cells import has_number, is_missing, is_named, rows_listed
 from stribeck.files.columns import has_dimension, si_factor
 from stribeck.files.table_reading import read_table
 from stribeck.files.text_table import TextTable
@@ -22,7 +22,7 @@ from stribeck.fits.stated import inputs_said
 from stribeck.fits.strokes import emptied, without_codes, without_codes_of_forces
 from stribeck.fits.values import LARGEST_FRICTION, MADE_FRICTION, checked, numbers, what_may_be_wrong
 from stribeck.quantities.formats import format_error, format_si
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, listed, show
 
 # Headers of a time
 TIME = (
@@ -117,6 +117,8 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
         parts.append(f"{show(per_length[1])} as load per length")
     if warm is not None:
         parts.append(f"{show(warm[1])} as temperature")
+    told = "; ".join([*made, *parts])
+    notes += _unread_labels(table, [name for name in written if name and show(name) not in told and name != run])
     of_case, said, unused = _said(table, asked, path.name, [*columns, *(["temperature"] if warm is not None else [])])
     return Raw(
         path=table.path,
@@ -321,6 +323,22 @@ def _load_per_length(table: TextTable) -> tuple[Array, str] | None:
             loads[loads > 0] = levels_of(loads[loads > 0])
             return loads, name
     return None
+
+
+def _unread_labels(table: TextTable, names: Sequence[str]) -> list[str]:
+    """Return notes on columns of words that stand in several rows each, such as those of two liquids, and are not used."""
+    found = []
+    for name in names:
+        read = name not in table.header or is_named(name, TIME)
+        words = [] if read else [cell for cell in table.column(name) if not is_missing(cell)]
+        different = list(dict.fromkeys(words))
+        if 1 < len(different) <= len(words) / FEWEST and not any(map(has_number, different)):
+            example = listed(map(show, different[:2]))
+            found.append(
+                f"{show(name)} was not used, though its rows differ, as {example}; curve = {show(name)} in [fit.columns] "
+                "makes curves of them."
+            )
+    return found
 
 
 def _curves(
