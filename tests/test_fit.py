@@ -181,7 +181,9 @@ def test_an_input_at_its_bound_is_said(tmp_path):
     assert found.converged and each.at_bound and each.value == pytest.approx(9e-7, rel=1e-3)
     assert any("roughness ended at its bound 900 nm: the data would move it further" in note for note in found.notes)
     assert math.isnan(each.standard_error)
-    assert found.outcome is sb.results.FitOutcome.AT_BOUND and found.to_dict()["outcome"] == "AT_BOUND"
+    said = json.loads(json.dumps(found.to_dict(), allow_nan=False))
+    assert found.outcome is sb.results.FitOutcome.AT_BOUND and said["outcome"] == "AT_BOUND"
+    assert said["inputs"][[one["name"] for one in said["inputs"]].index("roughness")]["standard_error"] is None
 
 
 def test_a_boundary_friction_that_no_contact_has_is_named():

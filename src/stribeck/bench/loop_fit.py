@@ -18,7 +18,7 @@ from stribeck.contacts.geometries import LineContact
 from stribeck.files.columns import Column, read_columns
 from stribeck.files.datasets import Column as DataColumn
 from stribeck.files.datasets import units_of
-from stribeck.files.results import Exported, Labelled
+from stribeck.files.results import Exported, Labelled, ready_for_json
 from stribeck.files.writing import PathLike, path_of
 from stribeck.fits.columns import WORDS
 from stribeck.fits.diagnosis import WIDEST, Unidentifiable, undetermined
@@ -111,7 +111,7 @@ class LoopFit(WithFittedInputs, Exported, Told, ByValue):
 
     def to_dict(self) -> dict[str, Any]:
         """Return values, intervals, rows and outcome, ready for JSON."""
-        found: dict[str, Any] = {
+        found = {
             "outcome": self.outcome.name,
             "message": self.outcome.value,
             "inputs": [each.to_dict() for each in self.inputs],
@@ -120,10 +120,11 @@ class LoopFit(WithFittedInputs, Exported, Told, ByValue):
             "over": self.over,
             "definition": self.stroke.definition,
             "undetermined": [asdict(each) for each in self.undetermined],
-            "notes": list(self.notes),
+            "notes": self.notes,
+            "rows": {name: values for name, (_, values, _, _) in self._rows.items()},
+            "units": units_of(self._rows),
         }
-        rows = {name: np.asarray(values).tolist() for name, (_, values, _, _) in self._rows.items()}
-        return found | {"rows": rows, "units": units_of(self._rows)}
+        return {name: ready_for_json(value) for name, value in found.items()}
 
     @property
     def _rows(self) -> dict[str, DataColumn]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-import math
 import os
 import re
 import signal
@@ -118,19 +117,8 @@ def answer(
     if not as_json:
         show([*lines(), *(f"Written: {path}" for path in written)])
         return
+    from stribeck.files.results import ready_for_json  # which loads numpy
+
     found = (checks.to_dict() if checks is not None else {}) | content()
     found |= {"conversions": list(case.conversions)} if case is not None and case.conversions else {}
-    print(json.dumps(_plain(found), indent=2, ensure_ascii=False, allow_nan=False))
-
-
-def _plain(content: Any) -> Any:
-    """Return content for JSON; what is not finite becomes null, as JSON knows no nan."""
-    if isinstance(content, dict):
-        return {name: _plain(value) for name, value in content.items()}
-    if hasattr(content, "tolist"):  # of arrays
-        return _plain(content.tolist())
-    if isinstance(content, list | tuple):
-        return [_plain(value) for value in content]
-    if isinstance(content, float) and not math.isfinite(content):
-        return None
-    return content
+    print(json.dumps(ready_for_json(found), indent=2, ensure_ascii=False, allow_nan=False))

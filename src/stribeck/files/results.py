@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -23,6 +24,19 @@ RETURNED = {
     "to_dict": "dict\n    Numbers, text, lists and dictionaries of these.",
     "to_si": "dict of str to float\n    By name.",
 }
+
+
+def ready_for_json(content: Any) -> Any:
+    """Return content for JSON; what is not finite becomes None, as JSON knows no nan."""
+    if isinstance(content, dict):
+        return {name: ready_for_json(value) for name, value in content.items()}
+    if hasattr(content, "tolist"):  # of arrays
+        return ready_for_json(content.tolist())
+    if isinstance(content, list | tuple):
+        return [ready_for_json(value) for value in content]
+    if isinstance(content, float) and not math.isfinite(content):
+        return None
+    return content
 
 
 class Tabled:

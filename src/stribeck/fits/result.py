@@ -19,7 +19,7 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.geometries import LINE
 from stribeck.contacts.inputs import InputTable, follows_surface
 from stribeck.files.datasets import Column, listed, units_of
-from stribeck.files.results import Exported, Labelled, Record, columns_of_records
+from stribeck.files.results import Exported, Labelled, Record, columns_of_records, ready_for_json
 from stribeck.fits.diagnosis import Quality, Unidentifiable, product_text
 from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.least_squares import Minimum
@@ -239,8 +239,8 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
         return friction, friction * np.exp(-half), friction * np.exp(half)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return values, intervals (infinite where open), tests, rows and outcome, ready for JSON."""
-        return {
+        """Return values, intervals (None where open), tests, rows and outcome, ready for JSON."""
+        found = {
             "converged": self.converged,
             "outcome": self.outcome.name,
             "message": self.outcome.value,
@@ -253,14 +253,14 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
                 }
                 for name in self.held
             ],
-            "covariance": self.covariance.tolist(),
-            "correlation": self.correlation.tolist(),
+            "covariance": self.covariance,
+            "correlation": self.correlation,
             "noise": self.noise,
             "logarithmic": self.logarithmic,
             "robust": self.robust,
             "quality": asdict(self.quality),
             "undetermined": [asdict(each) for each in self.undetermined],
-            "notes": list(self.notes),
+            "notes": self.notes,
             "definition": self.definition,
             "contact_law": self.law,
             "solver_shift": self.solver_shift,
@@ -271,9 +271,10 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
                 | {key: value for key in (*FREE_INPUTS, "speed") if (value := getattr(contact, key, None)) is not None}
                 for name, contact in zip(self.data.curves, self.contacts, strict=True)
             ],
-            "rows": {name: np.asarray(values).tolist() for name, (_, values, _, _) in self._rows.items()},
+            "rows": {name: values for name, (_, values, _, _) in self._rows.items()},
             "units": units_of_inputs(self.contact) | units_of(self._rows),
         }
+        return {name: ready_for_json(value) for name, value in found.items()}
 
     @property
     def _rows(self) -> dict[str, Column]:
