@@ -28,7 +28,7 @@ from stribeck.atlas.grid import (
     local,
     within,
 )
-from stribeck.numerics.dual import Dual, slope_of, value_of
+from stribeck.numerics.dual import Dual, chained, slope_of, value_of
 
 # Tabulated functions of the line, in the order of the table: the logarithms of fluid over contact share, of both viscous
 # frictions over :math:`\beta \bar F_N^{1/2} \lambda` and of the three gaps, and the offset less the central gap. Below the
@@ -102,17 +102,18 @@ class Table:
 
     def ends(self, region: int, k: Any, y: Any) -> Any:
         """Return the logarithms of the speeds at which segments end, shape (6, states), at the coordinates of a region."""
-        matrix, at_k, at_y = self.breaks[region].reshape(-1, BREAK_TERMS**2), value_of(k), value_of(y)
+        matrix = self.breaks[region].reshape(-1, BREAK_TERMS**2)
 
         def sums(in_k: Array, in_y: Array) -> Array:
             return breaks_from(matrix @ (in_k[:, None] * in_y).reshape(BREAK_TERMS**2, -1))
 
+        at_k, at_y = value_of(k), value_of(y)
         of_k, of_y = chebyshev(at_k, BREAK_TERMS), chebyshev(at_y, BREAK_TERMS)
-        found = sums(of_k, of_y)
-        if not isinstance(k, Dual):
-            return found
-        by_k, by_y = sums(chebyshev_slopes(at_k, BREAK_TERMS), of_y), sums(of_k, chebyshev_slopes(at_y, BREAK_TERMS))
-        return Dual(found, by_k * k.slope[:, None] + by_y * y.slope[:, None])
+        by_k, by_y = (
+            lambda: sums(chebyshev_slopes(at_k, BREAK_TERMS), of_y),
+            lambda: sums(of_k, chebyshev_slopes(at_y, BREAK_TERMS)),
+        )
+        return chained(sums(of_k, of_y), (k[None, :], y[None, :]), (by_k, by_y))
 
     def read(self, functions: tuple[int, ...], log_speed: Array, log_load: Array, kappa: Array, slopes: int) -> Array:
         """Return functions at states inside the box, and 0, 1 or 3 derivatives, shape (1 + slopes, functions, states).
@@ -180,9 +181,7 @@ class Table:
         block = np.where(segment < SEGMENTS, SEGMENTS * (first + i * region.pieces[1] + j) + segment, -1)
         block[segment >= SEGMENTS] = self.grid.pieces * SEGMENTS
         at = np.arange(segment.size)
-        lowest, low, high = (
-            _chosen(ends, np.clip(row, 0, SEGMENTS - 1), at) for row in (np.zeros_like(segment), segment - 1, segment)
-        )
+        lowest, low, high = (ends[np.clip(row, 0, SEGMENTS - 1), at] for row in (np.zeros_like(segment), segment - 1, segment))
         squared = segment == 0
         ratio = np.exp(power * np.minimum(s - lowest, 0.0))
         length = np.where(value_of(low) < value_of(high), high - low, 1.0)
@@ -207,12 +206,6 @@ class Table:
                     slope = self.film[number, :, function - 1] @ chebyshev_slopes(x[here], terms)
                     found[1, row, here] = slope * 2 * pieces / (high - low)
         return found
-
-
-def _chosen(values: Any, rows: Indices, columns: Indices) -> Any:
-    """Return one value of each column, with its derivatives."""
-    found = value_of(values)[rows, columns]
-    return Dual(found, values.slope[:, rows, columns]) if isinstance(values, Dual) else found
 
 
 def unpack(grid: Grid, data: Any) -> Table:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, Self
 
 import numpy as np
@@ -97,16 +98,16 @@ class FirstOrder:
         if partials is None:
             return NotImplemented
         value = function(*values)
-        known = zip(given, partials, strict=True)
-        return chained(value, given, [one(value, *values) if isinstance(each, FirstOrder) else None for each, one in known])
+        return chained(value, given, [partial(one, value, *values) for one in partials])
 
 
 def chained(value: Any, given: Sequence[Any], slopes: Sequence[Any]) -> Any:
-    """Return a value with the derivatives of what it follows from, each times a slope; a slope None stands for one."""
+    """Return a value with the derivatives of what it follows from, each times a slope, or what gives it; None is one."""
     found: Any = None
     for each, slope in zip(given, slopes, strict=True):
         if isinstance(each, FirstOrder):
-            part = each.joined(None, value) if slope is None else each.scaled(slope, value)
+            factor = slope() if callable(slope) else slope
+            part = each.joined(None, value) if factor is None else each.scaled(factor, value)
             found = part if found is None else found.joined(part, value)
     return value if found is None else found
 
@@ -133,9 +134,10 @@ class Dual(FirstOrder):
         return Dual(value, self.slope if other is None else self.slope + other.slope)
 
     def __getitem__(self, places: Any) -> Dual:
-        """Return some places; the derivative has the axes of the value."""
+        """Return some places; the derivative has the axes of the value, perhaps after one of its own."""
         slope = np.broadcast_to(self.slope, np.shape(self.value)) if np.ndim(self.slope) == 0 else self.slope
-        return Dual(self.value[places], slope[places])
+        own = (slice(None),) * (np.ndim(slope) - np.ndim(self.value))
+        return Dual(self.value[places], slope[*own, *(places if isinstance(places, tuple) else (places,))])
 
     def __matmul__(self, matrix: Array) -> Dual:
         """Return the product with a matrix of numbers; the derivative has the axes of the value."""
