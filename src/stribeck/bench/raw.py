@@ -11,7 +11,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import has_number, is_missing, is_named, rows_listed
+from stribeck.files.cells import has_number, is_missing, is_named, rows_left_out
 from stribeck.files.columns import has_dimension, si_factor
 from stribeck.files.table_reading import read_table
 from stribeck.files.text_table import TextTable
@@ -106,8 +106,7 @@ def read_raw(path: Path, settings: FitSettings) -> Raw:
         assert load is not None
         friction = friction - zero / np.abs(load)
     if not there.all():
-        missing = [number for number, kept in zip(table.numbers, there, strict=True) if not kept]
-        notes.append(f"{len(missing)} row{'s' * (len(missing) > 1)} without a value left out: {rows_listed(missing)}.")
+        notes.append(rows_left_out(np.array(table.numbers)[~there].tolist(), "without a value"))
     per_length = None if "load" in columns else _load_per_length(table)
     curve, curves = _curves(table, columns, settings, {} if per_length is None else {"load_per_length": per_length[0]})
     labels = table.column(run) if run else ()

@@ -2,7 +2,7 @@
 
 import csv
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from stribeck.quantities.units import InputError, show
 
@@ -187,3 +187,8 @@ def rows_listed(numbers: Iterable[object], most: int = MAX_LISTED_ROWS) -> str:
     """Return rows of a file as a sentence lists them, the first of them where there are many."""
     named = list(map(str, numbers))
     return ", ".join(named[:most]) + (", ..." if len(named) > most else "")
+
+
+def rows_left_out(numbers: Sequence[object], which: str) -> str:
+    """Return the note that rows of a file are left out."""
+    return f"{len(numbers)} row{'s' * (len(numbers) > 1)} {which} left out: {rows_listed(numbers)}."

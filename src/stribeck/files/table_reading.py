@@ -12,6 +12,7 @@ from stribeck.files.cells import (
     has_number,
     is_missing,
     number_of,
+    rows_left_out,
     rows_listed,
 )
 from stribeck.files.headings import Heading, Line, headings_in
@@ -136,7 +137,7 @@ def _read(
     between, below = ([each for each in left_out if (each < numbers[-1]) == inner] for inner in (True, False))
     for text, where in ((between, "of other text between"), (below, "below")):
         if text:
-            notes += (f"{len(text)} row{'s' * (len(text) > 1)} {where} the numbers left out: {rows_listed(text)}.",)
+            notes += (rows_left_out(text, f"{where} the numbers"),)
     units = heading.units
     written = tuple(dict.fromkeys(filter(None, header)))
     if len(set(steps)) > 1 and not bare:

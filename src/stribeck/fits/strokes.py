@@ -7,7 +7,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import rows_listed
+from stribeck.files.cells import rows_left_out, rows_listed
 from stribeck.files.text_table import TextTable
 from stribeck.fits.rig import column_of
 from stribeck.quantities.units import MAX_NUMBER, InputError, show
@@ -22,8 +22,8 @@ def without_codes(table: TextTable, abscissa: str, friction: Sequence[str]) -> T
     if coded.any():
         code = table.column(abscissa)[int(np.flatnonzero(coded)[0])]
         raise InputError(
-            f"{table.path}: column {show(abscissa)} has {show(code)} in row {_listed(table, coded)}, which programs write "
-            "where a value is missing; leave such cells empty."
+            f"{table.path}: column {show(abscissa)} has {show(code)} in row {rows_listed(_numbers(table, coded))}, which "
+            "programs write where a value is missing; leave such cells empty."
         )
     for name in friction:
         table = _without(table, name, _are_codes(table.values(name)))
@@ -94,8 +94,7 @@ def _moving(table: TextTable, speeds: Array, rest: Flags, frictions: list[Array]
         (turning & ~rest & ~idle, "in which friction has not turned round with the speed"),
     ):
         if rows.any():
-            count = int(rows.sum())
-            notes.append(f"{count} row{'s' * (count > 1)} {what} left out: {_listed(table, rows)}.")
+            notes.append(rows_left_out(_numbers(table, rows), what))
     kept = ~(rest | idle | turning)
     if not kept.any():
         raise InputError(f"{table.path}: no row is in motion; check the columns of speed and friction.")
@@ -112,19 +111,17 @@ def _without(table: TextTable, name: str, coded: Flags) -> TextTable:
 
 def emptied(table: TextTable, name: str, out: Flags, which: str) -> TextTable:
     """Return the table with some empty cells, which a note counts and says why."""
-    at, count = table.header.index(name), int(out.sum())
+    at = table.header.index(name)
     rows = tuple((*row[:at], "", *row[at + 1 :]) if each else row for row, each in zip(table.rows, out, strict=True))
-    note = f"{count} row{'s' * (count > 1)} {which} left out: {_listed(table, out)}."
-    return replace(table, rows=rows, notes=(*table.notes, note))
+    return replace(table, rows=rows, notes=(*table.notes, rows_left_out(_numbers(table, out), which)))
 
 
 def _sentence(table: TextTable, name: str, rows: Flags, one: str, several: str) -> str:
-    count = int(rows.sum())
-    first = int(np.flatnonzero(rows)[0])
-    if count == 1:
-        return f"row {table.numbers[first]}, column {show(name)}: {show(table.column(name)[first])} {one}"
-    return f"column {show(name)} is {several} in {count} rows ({_listed(table, rows)})"
+    first, *others = _numbers(table, rows)
+    if not others:
+        return f"row {first}, column {show(name)}: {show(table.column(name)[int(np.argmax(rows))])} {one}"
+    return f"column {show(name)} is {several} in {1 + len(others)} rows ({rows_listed([first, *others])})"
 
 
-def _listed(table: TextTable, rows: Flags) -> str:
-    return rows_listed(table.numbers[i] for i in np.flatnonzero(rows))
+def _numbers(table: TextTable, rows: Flags) -> list[int]:
+    return [table.numbers[i] for i in np.flatnonzero(rows)]

@@ -20,7 +20,7 @@ from stribeck.files.cells import (
     is_missing,
     normalised_header,
     read_as,
-    rows_listed,
+    rows_left_out,
     thousands_in,
 )
 from stribeck.files.reading import text_of
@@ -347,8 +347,7 @@ def _table(path: Path) -> _Table:
     notes = list(found.notes)
     below = _rows_of_words_below(found.rows)
     if below:
-        left_out = found.numbers[-below:]
-        notes.append(f"{below} row{'s' * (below > 1)} below the numbers left out: {rows_listed(left_out)}.")
+        notes.append(rows_left_out(found.numbers[-below:], "below the numbers"))
         found = replace(found, rows=found.rows[:-below], numbers=found.numbers[:-below])
     found = _with_decimal_commas(path, found)
     cells, numbers, width = [list(row) for row in found.rows], list(found.numbers), len(found.header)
