@@ -15,7 +15,7 @@ from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.explorer.answer import Answerer
 from stribeck.explorer.inputs import choices, inputs, url
 from stribeck.fits.free_inputs import free_inputs
-from stribeck.fits.measurements import measurements_of
+from stribeck.fits.measurements import read_measurements
 from stribeck.fits.model import FrictionModel
 from stribeck.regimes.margins import regime_margins
 
@@ -92,7 +92,7 @@ def test_a_fit_finds_the_stress_and_its_exponent_within_their_intervals(contact,
 def test_slopes_of_a_fit_are_those_of_differences(contact, measured):
     case = contact.replace(shear_stress=1.5e5)
     settings = settings_of(case)
-    data = measurements_of(measured, settings)
+    data = read_measurements(measured, settings)
     names = ("shear_stress", "roughness", "modulus", "speed_exponent")
     model = FrictionModel(case, data, free_inputs(case, data, names, settings))
     states = model.states("balanced", 1e-7, lambda: None).solved()

@@ -12,14 +12,14 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.cases.case import Case
-from stribeck.cases.fit_settings import FitSettings, settings_of
-from stribeck.cases.reading import load_case
+from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.geometries import LineContact
 from stribeck.files.columns import Column, read_columns
 from stribeck.files.datasets import Column as DataColumn
 from stribeck.files.datasets import units_of
 from stribeck.files.results import Exported, Labelled, ready_for_json
 from stribeck.files.writing import PathLike, path_of
+from stribeck.fits.case_file import case_of
 from stribeck.fits.columns import WORDS
 from stribeck.fits.diagnosis import WIDEST, Unidentifiable, undetermined
 from stribeck.fits.fit import names_to_fit
@@ -241,21 +241,19 @@ def _middle(loop: Loop) -> float:
 
 def _problem(case: PathLike | Case | LineContact, given: dict[str, Any]) -> tuple[LineContact, FitSettings, dict[str, Any]]:
     """Return contact, settings of the fit, and arguments of the stroke."""
-    settings = None
-    arguments: dict[str, Any] = {"steps": STEPS}
-    if not isinstance(case, LineContact):
-        known = case if isinstance(case, Case) else load_case(case)
-        case, settings = known.contact, known.fit
-        arguments |= {} if known.stroke is None else known.stroke.arguments
-    if not isinstance(case, LineContact):
-        raise InputError(f"contact = {show(case)}; loops are fitted with a LineContact, as strokes are solved of one.")
+    known = case_of(None, case)
+    if not isinstance(known.contact, LineContact):
+        raise InputError(
+            f"contact = {show(known.contact)}; loops are fitted with a LineContact, as strokes are solved of one."
+        )
+    arguments: dict[str, Any] = {"steps": STEPS} | ({} if known.stroke is None else known.stroke.arguments)
     arguments |= {name: value for name, value in given.items() if value is not None}
     if "motion" not in arguments:
         raise InputError("the motion is missing; give a table [stroke] in the case, or motion=sb.motions.Sine(...).")
     motion = arguments["motion"]
     if not motion.repeats:
         raise InputError(f"motion = {show(motion)} does not repeat; a loop is one of a motion to and fro.")
-    return case, settings_of(case) if settings is None else settings, arguments
+    return known.contact, known.fit, arguments
 
 
 class _LoopModel:
@@ -352,7 +350,7 @@ class _LoopModel:
             columns.append((rubbing * (beside[0] - asperities) + beside[1] - fluid) / STEP)
         share, friction, jacobian = np.ones_like(fluid), rubbing * asperities + fluid, np.column_stack(columns)
         friction, jacobian = friction + self.zero_of(self.data.friction - friction), jacobian - self.zero_of(jacobian)
-        return Prediction(friction, jacobian, share, share, share, rubbing * errors[0] + errors[1])
+        return Prediction(friction, jacobian, share, share, rubbing * errors[0] + errors[1])
 
     def zero_of(self, friction: Array) -> Array:
         """Return the part of friction that a zero of the force and its drift make."""
@@ -422,9 +420,8 @@ def _result(model: _LoopModel, at: Minimum, zero: str) -> LoopFit:
     against = int((model.motion.speed(model.phase) * measured < 0).sum())
     if against and model.data.over == "time":
         notes.append(f"In {against} of {n} rows friction has the sign of the other way: does time begin with the motion?")
-    size = np.abs(by_asperities) + np.abs(by_fluid)
-    shares = (np.abs(by_asperities) / size, np.abs(by_fluid) / size, model.along(found, found.contact_load_share))
-    of_rows = Prediction(size, at.prediction.jacobian, *shares, error_of_rows)
+    size, loads = np.abs(by_asperities) + np.abs(by_fluid), model.along(found, found.contact_load_share)
+    of_rows = Prediction(size, at.prediction.jacobian, np.abs(by_asperities) / size, loads, error_of_rows)
     with np.errstate(invalid="ignore"):  # nothing may change with any input
         weak = undetermined(model.free, [each.label for each in inputs], at.jacobian, of_rows)
     return LoopFit(

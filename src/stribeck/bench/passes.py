@@ -19,9 +19,8 @@ from stribeck.fits.repeats import (
     LARGEST_NOISE,
     SAME_SPEED,
     error_of_mean,
-    errors_of_means,
     memory,
-    sizes_of_noise,
+    noise_of_means,
 )
 from stribeck.fits.strokes import REST_SPEED
 from stribeck.quantities.formats import format_percent, format_si
@@ -323,23 +322,14 @@ def _settled(each: Pass, common: tuple[float, float], raw: Raw, notes: list[str]
 
 def _with_errors(found: Sequence[Pass], raw: Raw) -> list[Pass]:
     """Return passes with the error of their means: that of correlated values, at least that of the last digit or the file."""
-    errors, scatter = dict.fromkeys(range(len(found)), 0.0), dict.fromkeys(range(len(found)), 0.0)
-    for strokes in (False, True):
+    done = dict[int, Pass]()
+    for strokes in {each.strokes for each in found}:
         mine = [i for i, each in enumerate(found) if each.strokes == strokes]
-        if mine:
-            sizes = sizes_of_noise([found[i].values for i in mine])
-            series = [(found[i].values - found[i].mean) / size for i, size in zip(mine, sizes, strict=True)]
-            alone = math.sqrt(memory(series)[0])
-            for i, size, error in zip(mine, sizes, errors_of_means(series), strict=True):
-                errors[i], scatter[i] = size * error, size * alone
-    done = []
-    for i, each in enumerate(found):
-        count = len(each.values)
-        independent = min(count, max(1.0, (scatter[i] / errors[i]) ** 2)) if errors[i] > 0 else 1.0
-        rounding = raw.resolution / math.sqrt(12) if errors[i] > 0 or count > 1 else 0.0
-        error = max(errors[i], rounding, _stated(each, raw))
-        done.append(replace(each, error=error, independent=independent))
-    return done
+        for i, (own, independent) in zip(mine, noise_of_means([found[i].values for i in mine]), strict=True):
+            rounding = raw.resolution / math.sqrt(12) if own > 0 or len(found[i].values) > 1 else 0.0
+            error = max(own, rounding, _stated(found[i], raw))
+            done[i] = replace(found[i], error=error, independent=independent)
+    return [done[i] for i in range(len(found))]
 
 
 def _stated(each: Pass, raw: Raw) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from stribeck._types import Array, Flags, Indices
 from stribeck.bench.passes import Pass
 from stribeck.bench.raw import Raw
-from stribeck.fits.repeats import CLEAR, FEWEST, SAME_SPEED, Row, counted, run_in
+from stribeck.fits.repeats import CLEAR, FEWEST, SAME_SPEED, Row, at_same_speed, counted, run_in
 from stribeck.quantities.formats import format_error, format_si
 
 UNLIKELY = 0.05  # Probability below which passes differ by more than the noise within them
@@ -117,14 +117,9 @@ def _point(curve: int, of: Sequence[Pass], raw: Sequence[Raw], friction: float, 
 
 def _levels(passes: Sequence[Pass]) -> Indices:
     """Return the number of the speed of each pass; passes of a curve within one per cent have the same."""
-    order = sorted(range(len(passes)), key=lambda i: (passes[i].curve, passes[i].speed))
     found = np.zeros(len(passes), dtype=int)
-    number, first = -1, None
-    for i in order:
-        each = passes[i]
-        if first is None or each.curve != first.curve or each.speed > (1 + SAME_SPEED) * first.speed:
-            number, first = number + 1, each
-        found[i] = number
+    for number, alike in enumerate(at_same_speed([(each.curve, each.speed) for each in passes])):
+        found[alike] = number
     return found
 
 

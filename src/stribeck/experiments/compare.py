@@ -26,7 +26,7 @@ from stribeck.files.toml import toml_text
 from stribeck.files.writing import PathLike
 from stribeck.fits.case_file import case_of, write_fitted_case
 from stribeck.fits.fit import fit, names_to_fit
-from stribeck.fits.measurements import Data, Measurements, measurements_of
+from stribeck.fits.measurements import Data, Measurements, read_measurements
 from stribeck.fits.result import Fit
 from stribeck.fluids.rheology.eyring import Eyring
 from stribeck.fluids.rheology.rate_laws import Carreau
@@ -156,7 +156,7 @@ def compare(
     """
     case = case_of(data, case)
     contact, settings = case.contact, case.fit
-    rows = measurements_of(data, settings)
+    rows = read_measurements(data, settings)
     names = names_to_fit(free, settings, contact)
     if models is not None and laws is not None:
         raise InputError("laws and models are both given; a model may have a law: {'name': {'law': ...}}.")

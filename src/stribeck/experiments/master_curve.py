@@ -19,7 +19,7 @@ from stribeck.files.datasets import Column
 from stribeck.files.results import Exported, Labelled, Record
 from stribeck.files.writing import PathLike
 from stribeck.fits.case_file import case_of
-from stribeck.fits.measurements import Data, Measurements, error_of, measurements_of
+from stribeck.fits.measurements import Data, Measurements, error_of, read_measurements
 from stribeck.quantities.formats import format_percent
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import Card, Told
@@ -229,7 +229,7 @@ def master_curve(data: Data, case: PathLike | Case | Contact) -> MasterCurve:
     """
     case = case_of(data, case)
     contact, settings = case.contact, case.fit
-    rows = measurements_of(data, settings)
+    rows = read_measurements(data, settings)
     used, notes = _usable(rows)
     contacts = [contact.replace(speed=1.0, **inputs) for inputs in used.inputs]
     absolute = error_of(used, settings)

@@ -136,7 +136,7 @@ def _reason(free: FreeInput, prediction: Prediction) -> str:
     """Return why the data do not determine an input, in terms of the fitted curve."""
     error = float((prediction.error / prediction.friction).max())
     # A share below its error is said to be that at most.
-    asperities, fluid = (max(float(part.max()), error) for part in (prediction.contact_share, prediction.fluid_share))
+    asperities, fluid = (max(float(part.max()), error) for part in (prediction.contact_share, 1 - prediction.contact_share))
     if free.name in SIZES:
         return (
             f"asperities cause at most {format_percent(asperities)} of the friction in any row, and a curve without a "

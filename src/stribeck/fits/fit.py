@@ -25,7 +25,7 @@ from stribeck.fits.diagnosis import judge_residuals, undetermined
 from stribeck.fits.free_inputs import FreeInput, free_inputs
 from stribeck.fits.intervals import covariance_of, ends_beside, ends_of
 from stribeck.fits.least_squares import NEAR, Minimum, Objective, effective_parameters, minimise, objective, settle
-from stribeck.fits.measurements import Data, measurements_of
+from stribeck.fits.measurements import Data, read_measurements
 from stribeck.fits.model import FrictionModel
 from stribeck.fits.result import Fit, fitted_input, notes_of, outcome_of
 from stribeck.numerics.threads import one_blas_thread
@@ -104,7 +104,7 @@ def fit(
     """
     case = case_of(data, case)
     contact, settings, definition = case.contact, case.fit, case.definition
-    data = measurements_of(data, settings)
+    data = read_measurements(data, settings)
     names = names_to_fit(free, settings, contact)
     if robust is not None:
         settings = replace(settings, robust=robust)
@@ -283,14 +283,8 @@ def _result(
         correlation = covariance / np.outer(width, width)
         moved = np.abs(shift) / width if shift is not None else np.array([math.nan])
     contacts = tuple(model.contact_of(k, at.theta) for k in range(len(data.curves)))
-    fitted: dict[str, float] = {}
-    for free, each in zip(model.free, inputs, strict=True):
-        of_first = free.curves is not None or bool(free.also) or free.is_factor
-        for name in free.names:
-            own, first = (getattr(one, name, None) for one in (contact, contacts[0]))
-            value = first if of_first else each.value
-            if own is not None and value is not None:
-                fitted[name] = value
+    there = (name for free in model.free for name in free.names if getattr(contact, name, None) is not None)
+    fitted = {name: value for name in there if (value := getattr(contacts[0], name, None)) is not None}
     errors = at.prediction.error / at.prediction.friction
     return Fit(
         inputs=inputs,

@@ -170,7 +170,6 @@ def minimise(
     goal: Objective,
     start: Array,
     fixed: dict[int, float] | None = None,
-    most: int = MOST_EVALUATIONS,
     on_step: Callable[[], object] | None = None,
     tolerance: float = VALUE_TOLERANCE,
     flat: float = NO_INFORMATION,
@@ -244,11 +243,11 @@ def minimise(
             ftol=tolerance,
             xtol=PLACE_TOLERANCE,
             gtol=VALUE_TOLERANCE,
-            max_nfev=most,
+            max_nfev=MOST_EVALUATIONS,
         )
         here = reached(found.x, found.status > 0)
         # Where q jumps by the errors of the states, steps are refused that its derivatives show to be right.
-        while here.ended and not here.converged and count < most:
+        while here.ended and not here.converged and count < MOST_EVALUATIONS:
             step = _step_left(here, moving)[0]
             jump = 2.0 * float(np.abs(goal.influence(here.residuals)[0]) @ here.doubt)
             try:

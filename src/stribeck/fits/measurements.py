@@ -17,7 +17,7 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.cells import rows_listed, split_header
+from stribeck.files.cells import rows_left_out, split_header
 from stribeck.files.columns import BARE
 from stribeck.files.datasets import Column
 from stribeck.files.results import Exported, Labelled
@@ -219,7 +219,7 @@ def _label(inputs: dict[str, float], of_all: list[dict[str, float]], settings: F
     return ", ".join(f"{rows[name].label} {format_si(inputs[name], rows[name].dimension, 4)}" for name in differing) or "data"
 
 
-def _taken(columns: dict[str, list[str]], written: tuple[str, ...], made: tuple[str, ...], run: str) -> str:
+def _taken(columns: dict[str, list[str]], written: tuple[str, ...], made: Sequence[str], run: str) -> str:
     """Return what each column of the file was taken for, after the sentences on those that were made of others."""
     parts = [
         f"{' and '.join(map(show, names))} as {meaning.replace('_', ' ')}"
@@ -236,7 +236,7 @@ def reading_of(data: Measurements) -> str:
 
 
 def _notes(
-    table: TextTable, columns: dict[str, list[str]], empty: list[int], made: tuple[str, ...] = (), run: str = ""
+    table: TextTable, columns: dict[str, list[str]], empty: list[int], made: Sequence[str], run: str
 ) -> tuple[str, ...]:
     notes = list(table.notes)
     used = {name for names in columns.values() for name in names}
@@ -245,8 +245,7 @@ def _notes(
         notes.append("Numbers were read with decimal commas.")
     notes += table.thousands_noted([name for name in table.written if name in used])
     if empty:
-        count = f"{len(empty)} row{'s' * (len(empty) != 1)}"
-        notes.append(f"{count} without a value left out: {rows_listed(sorted(set(empty)))}.")
+        notes.append(rows_left_out(sorted(set(empty)), "without a value"))
     unused = [name for name in table.header if name and name not in used and name != run and show(name) not in told]
     if unused:
         notes.append(f"Columns not used: {', '.join(unused)}.")
@@ -274,14 +273,12 @@ Data = OneOf | Sequence[OneOf]
 
 
 @answers_typos
-def read_measurements(
-    path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]], settings: FitSettings | None = None
-) -> Measurements:
+def read_measurements(path: Data, settings: FitSettings | None = None) -> Measurements:
     """Read measured friction curves from a text file or a workbook, or from several.
 
     Parameters
     ----------
-    path : str or path-like, or sequence of these
+    path : str or path-like or Measurements, or sequence of these
         Columns apart by tab, semicolon, comma or spaces, with a header such as ``speed [mm/s];friction [%]``: friction, one of
         speed (the sum of both surfaces', twice a mean or entrainment speed), viscosity times speed and Hersey number, and
         where wanted its standard error, the name of the curve, and inputs of the contact in which curves differ.  Several
@@ -299,24 +296,16 @@ def read_measurements(
     InputError
         If the file cannot be read, or a value be used; the sentence names row and column.
     """
-    return measurements_of(path, settings)
-
-
-def measurements_of(data: Data, settings: FitSettings | None = None) -> Measurements:
-    """Return the measurements of files, or measurements that were read, as one set of curves."""
-    settings = (
-        FitSettings() if settings is None else checked_kind("settings", settings, FitSettings, "the FitSettings of a case")
-    )
-    if isinstance(data, Measurements):
-        return data
+    settings = FitSettings() if settings is None else settings
+    checked_kind("settings", settings, FitSettings, "the FitSettings of a case")
+    if isinstance(path, Measurements):
+        return path
+    given = [path] if isinstance(path, str | os.PathLike) else path
+    if not isinstance(given, list | tuple):
+        raise InputError(f"data = {show(path)}; it must be a path, Measurements, or a list of these.")
     several: list[Path | Measurements] = []
-    if isinstance(data, str | os.PathLike):
-        several += files_of([data])
-    else:
-        if not isinstance(data, list | tuple):
-            raise InputError(f"data = {show(data)}; it must be a path, Measurements, or a list of these.")
-        for each in data:
-            several += [each] if isinstance(each, Measurements) else files_of([each])
+    for each in given:
+        several += [each] if isinstance(each, Measurements) else files_of([each])
     if not several:
         raise InputError("data is empty; give at least one file of measured friction.")
     paths = [each for each in several if isinstance(each, Path)]

@@ -53,8 +53,7 @@ class Prediction:
 
     friction: Array  # Size of the friction coefficient [-]
     jacobian: Array  # Derivatives by the logarithms of the free inputs [-]
-    contact_share: Array  # Parts of the friction coefficient that asperities and fluid cause [-]
-    fluid_share: Array  # Parts of the friction coefficient that asperities and fluid cause [-]
+    contact_share: Array  # Part of the friction coefficient that asperities cause [-]
     load_share: Array  # Part of the load on asperities [-]
     error: Array  # Estimated absolute error of the friction coefficient [-]
 
@@ -302,12 +301,11 @@ class FrictionModel:
         by_model = np.zeros((len(x), len(self.free)))
         by_model[:, : known - 3] = slopes[3:known].T
         jacobian = np.einsum("kn,npk->np", np.array([*slopes[:3], contact, *slopes[known:]]), A) + by_model
-        errors, share = dict(zip(names, found.errors[1:-1], strict=True)), friction_share(contact, fluid)
+        errors = dict(zip(names, found.errors[1:-1], strict=True))
         return Prediction(
             friction=np.abs(contact + fluid),
             jacobian=np.copysign(1.0, contact + fluid)[:, None] * jacobian,
-            contact_share=share,
-            fluid_share=friction_share(fluid, contact),
+            contact_share=friction_share(contact, fluid),
             load_share=found.values[-1],
             error=x[:, 3] * found.errors[0]
             + self.rule.viscous_error(parts, errors, x[:, 0], x[:, 1], {**inputs, **fixed}, states.definition),

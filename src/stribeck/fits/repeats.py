@@ -23,6 +23,15 @@ FEWEST_BLOCKS = 8  # Blocks of a series from which the correlation of neighbours
 SMALL_PROBABILITY = 0.01  # Probability below which the scatter of one step is its own and not that of all
 
 
+def noise_of_means(series: Sequence[Array]) -> list[tuple[float, float]]:
+    """Return the standard error of the mean of each series, and how many independent values of its kind have this error."""
+    sizes = _sizes_of_noise(series)
+    scaled = [(each - each.mean()) / size for each, size in zip(series, sizes, strict=True)]
+    variance, errors = memory(scaled)[0], errors_of_means(scaled)
+    counts = [min(len(each), max(1.0, variance / e**2)) if e > 0 else 1.0 for each, e in zip(series, errors, strict=True)]
+    return [(error * size, count) for error, size, count in zip(errors, sizes, counts, strict=True)]
+
+
 def errors_of_means(series: Sequence[Array]) -> list[float]:
     """Return the standard errors of the means of series that share variance and correlation, given their deviations."""
     best = [0.0] * len(series)
@@ -45,7 +54,7 @@ def errors_of_means(series: Sequence[Array]) -> list[float]:
         block *= 2
 
 
-def sizes_of_noise(series: Sequence[Array]) -> list[float]:
+def _sizes_of_noise(series: Sequence[Array]) -> list[float]:
     """Return what the noise of each series goes with: its mean, or a lower power of it where their scatter clearly says so."""
     from scipy.stats import linregress
 
@@ -193,9 +202,7 @@ def _errors(groups: Sequence[Sequence[_Step]]) -> tuple[list[float], str]:
     """Return the relative standard errors of the means of steps at one speed, and what they are from."""
     steps = [step for group in groups for step in group]
     series = [np.array([row[3] for row in step.rows]) for step in steps]
-    sizes_of = sizes_of_noise(series)
-    absolute = errors_of_means([(each - each.mean()) / size for each, size in zip(series, sizes_of, strict=True)])
-    within = iter([error * size / step.mean[3] for error, size, step in zip(absolute, sizes_of, steps, strict=True)])
+    within = iter([error / step.mean[3] for (error, _), step in zip(noise_of_means(series), steps, strict=True)])
     series = [each / each.mean() - 1 for each in series]
     own, spread, freedom = [], 0.0, 0
     for group in groups:
@@ -298,14 +305,19 @@ def _curve_of(row: Row) -> tuple[str, tuple[tuple[str, float], ...]]:
 
 def _at_same_speed(steps: Sequence[_Step], tolerance: float) -> list[list[_Step]]:
     """Return steps of the same curve and speed together."""
-    groups: list[list[_Step]] = []
-    for step in sorted(steps, key=lambda step: (step.mean[0], sorted(step.mean[5].items()), step.mean[2])):
-        first = groups[-1][0].mean if groups else None
-        same = first is not None and _curve_of(first) == _curve_of(step.mean) and step.mean[2] / first[2] <= 1 + tolerance
-        if same:
-            groups[-1].append(step)
+    means = [step.mean for step in steps]
+    return [[steps[i] for i in each] for each in at_same_speed([(_curve_of(row), row[2]) for row in means], tolerance)]
+
+
+def at_same_speed(places: Sequence[tuple[Any, float]], tolerance: float = SAME_SPEED) -> list[list[int]]:
+    """Return which of curves and speeds are the same: those of a curve up to a tolerance above the slowest, ascending."""
+    groups: list[list[int]] = []
+    for i in sorted(range(len(places)), key=lambda i: places[i]):
+        curve, slowest = places[groups[-1][0]] if groups else (None, 0.0)
+        if groups and places[i][0] == curve and places[i][1] / slowest <= 1 + tolerance:
+            groups[-1].append(i)
         else:
-            groups.append([step])
+            groups.append([i])
     return groups
 
 

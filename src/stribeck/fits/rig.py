@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import replace
-from typing import NamedTuple
+from functools import partial
 
 import numpy as np
 
@@ -83,38 +83,28 @@ ROLLING_RATIO = 0.005  # Slide-to-roll ratio up to which it is that of pure roll
 NEXT_LEVEL = 1.1  # Ratio of neighbouring values from which they belong to two settings, and not to the noise of one
 
 
-class Prepared(NamedTuple):
-    """A table with friction and speed."""
+def prepared(
+    table: TextTable, settings: FitSettings, known: Callable[[str], bool], *, signed: bool = False
+) -> tuple[TextTable, list[str], str, FitSettings, list[str]]:
+    """Return a table with friction and speed made of what a rig measured, ``signed`` with the direction of the force.
 
-    table: TextTable  # With columns `friction` and `sum of speeds [m/s]` added where they had to be made
-    said: tuple[str, ...]  # What was made of what, one sentence each
-    run: str  # Header of the column that numbers the runs; empty if there is none
-    settings: FitSettings  # Without the units of what was made
-    found: tuple[str, ...]  # What columns of a rig there are
-
-
-def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], bool], *, signed: bool = False) -> Prepared:
-    """Return a table with friction and speed computed from what a rig measured, ``signed`` with the direction of the force."""
+    Then follow a sentence on each that was made, the header of the runs, the settings without their units, and what there is.
+    """
     table = _with_stated_ratio(table, settings)
     found, source = _rig_columns(table, settings), table
-    said = []
-    ours = set()
-    if not known("friction") or (settings.columns.keys() & FORCES and "friction" not in settings.columns):
-        made = _friction(table, _declared_first(found, FORCES, settings), settings, signed)
+    said, ours = list[str](), set[str]()
+    of_forces = partial(_friction, signed=signed)
+    for what, parts, make, header in (("friction", FORCES, of_forces, MADE_FRICTION), ("speed", SPEEDS, _speed, MADE_SPEED)):
+        if known(what) and (what in settings.columns or not settings.columns.keys() & parts):
+            continue
+        made = make(table, _declared_first(found, parts, settings), settings)
         if made is not None:
             values, sentence = made
-            table = table.with_column(MADE_FRICTION, _texts(values))
-            ours.add("friction")
-            said.append(sentence)
-    if not known("speed") or (settings.columns.keys() & SPEEDS and "speed" not in settings.columns):
-        made = _speed(table, _declared_first(found, SPEEDS, settings), settings)
-        if made is not None:
-            values, sentence = made
-            table = table.with_column(MADE_SPEED, _texts(values))
+            table = table.with_column(header, _texts(values))
             for name in filter(None, table.written):
                 if sentence.endswith(f"of column {show(name)}"):
                     table = table.without(name)  # the radius of a track is not that of the ball
-            ours.add("speed")
+            ours.add(what)
             said.append(sentence)
     for meaning, made_column in (("normal_force", MADE_LOAD), ("slide_to_roll", MADE_RATIO)):
         if meaning in found and not {made_column, "curve"} & settings.columns.keys() and not known("curve"):
@@ -131,7 +121,7 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
     marked = source.thousands_noted([name for name in source.written if show(name) in told])
     table = replace(table, notes=(*table.notes, *idle, *marked))
     units = {name: unit for name, unit in settings.units.items() if name not in ours}
-    return Prepared(table, tuple(said), found.get("run", [""])[0], replace(settings, units=units), tuple(found))
+    return table, said, found.get("run", [""])[0], replace(settings, units=units), [*found]
 
 
 def _with_stated_ratio(table: TextTable, settings: FitSettings) -> TextTable:
