@@ -94,10 +94,7 @@ def _sensitivities(
     changes: Sequence[str] = (),
     within: Within | None = None,
 ) -> dict[str, float]:
-    """Return the sensitivities by what asperities rub by and the parts of the viscous friction.
-
-    The slopes of these are by the logarithms of the groups, and of inputs that change the model.
-    """
+    """Return the sensitivities, given what asperities rub by, viscous parts, and slopes by groups and by changes."""
     groups, asperities, rule = contact.groups, contact.friction_of_asperities, RULES[contact.groups.geometry]
     inputs, count = rule.of_contact(contact), slopes.shape[1]
     rows = np.eye(count + len(inputs))

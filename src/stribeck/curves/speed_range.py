@@ -122,10 +122,7 @@ def no_range(outcome: Outcome, groups: Groups) -> SolveError:
 def automatic_speed_range(
     groups: Groups, boundary_friction: float, beta: float, definition: Definition
 ) -> tuple[float, float]:
-    """Return the speed groups from boundary plateau to hydrodynamic branch, of a coarse curve with the model of the article.
-
-    Smooth surfaces have no plateau: their curve covers ten decades up to speed 10.
-    """
+    """Return the speed groups from plateau to hydrodynamic branch, of a coarse curve with the model of the article."""
     if groups.geometry == "point":
         return _speeds_of_ball(groups, boundary_friction, beta, definition)
     groups = replace(groups, model=BASE_MODEL)
@@ -142,14 +139,11 @@ def automatic_speed_range(
 
 
 def _speeds_of_ball(groups: Groups, boundary_friction: float, beta: float, definition: Definition) -> tuple[float, float]:
-    """Return the speed groups from the boundary plateau of a ball to its hydrodynamic branch, on coarse states a decade apart.
-
-    They begin where the smooth film is thirty times the roughness, or at the first below that is solved.  Curves of smooth
-    surfaces cover eight decades up to speed 10.
-    """
+    """Return the speed groups from the boundary plateau of a ball to its hydrodynamic branch, by states a decade apart."""
     kappa = float(groups.relative_roughness)
     if kappa == 0:
         return BALL_SPEEDS[0], 10.0
+    # From where the smooth film is thirty times the roughness, or from the first below that is solved.
     neighbours = Neighbours(BALL_RTOL)
     highest, low, share = BALL_SPEEDS[1], min(BALL_SPEEDS[1], max(1e-6, (30 * kappa / 0.42) ** (1 / 0.6))), None
     high = low

@@ -195,11 +195,9 @@ def overlapping(points: Points) -> Array:
 
 
 def departure(points: Points, curve: int, found: Agreement) -> tuple[float, float, float, float, bool] | None:
-    """Return how far a curve lies from the others; None where fewer than three of its rows lie beside them.
-
-    That is the mean difference of ln(friction) and its error; the logarithm of the factor on the abscissa that removes it, nan
-    where none does, and its error; and whether this factor explains it better.
-    """
+    """Return how far a curve lies from the others; None where fewer than three of its rows lie beside them."""
+    # The mean difference of ln(friction) and its error; the logarithm of the factor on the abscissa that removes it, nan
+    # where none does, and its error; and whether this factor explains it better.
     mine = points.curve == curve
     others = points.part(~mine)
     inside = np.nonzero(mine & overlapping(points) & (points.x >= others.x.min()) & (points.x <= others.x.max()))[0]

@@ -209,10 +209,7 @@ def _refuse_logarithm(table: TextTable, name: str, meaning: str) -> None:
 
 
 def _error_of(table: TextTable, settings: FitSettings, found: dict[str, list[str]]) -> str:
-    """Return the column of the standard error of friction; empty if there is none.
-
-    A column that is only called 'SD' belongs to the column of friction or speed before it.
-    """
+    """Return the column of the standard error of friction, which is after friction if only called 'SD'; empty if none."""
     if "error" in settings.columns or "friction" not in found:
         return ""
     names = [name for name in _candidates(table, settings, "error") if not any(name in each for each in found.values())]

@@ -67,10 +67,8 @@ def undetermined(
 
 
 def _sparse(directions: Array, S: Array) -> list[tuple[Array, float]]:
-    """Return a basis of the undetermined directions of which each has as few inputs as possible.
-
-    Gauss elimination with the largest element as pivot: where two pairs of inputs are tied, the singular vectors mix them.
-    """
+    """Return a basis of the undetermined directions of which each has as few inputs as possible."""
+    # Gauss elimination with the largest element as pivot: where two pairs of inputs are tied, the singular vectors mix them.
     rows = directions.copy()
     errors = np.divide(1.0, S, out=np.full_like(S, np.inf), where=S > 0)
     used: list[int] = []

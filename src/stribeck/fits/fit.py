@@ -204,10 +204,7 @@ def _search(goal: Objective, definition: Definition, report: _Progress) -> Minim
 
 
 def _solved(found: Minimum, report: _Progress) -> Minimum:
-    """Return the minimum on solved states, from that on states that were read.
-
-    What is read is solved at the minimum, and the minimum found anew, until the solved states say that it is there.
-    """
+    """Return the minimum on solved states, from that on states that were read, which is found anew until both agree."""
     solved = found.objective.states.solved()
     for _ in () if solved.uses_atlas else range(ROUNDS):
         fine = minimise(replace(found.objective, states=solved), found.theta, near=math.inf)
@@ -251,10 +248,7 @@ def _places(goal: Objective) -> Array:
 
 
 def _nearest(at: Minimum) -> Array:
-    """Return the inputs nearest to the case among those with the same residuals to first order.
-
-    Along such directions the data determine nothing, and a value far from the case would be an accident of the iteration.
-    """
+    """Return the inputs nearest to the case, as any others with the same residuals are an accident of the iteration."""
     rows, _ = at.objective.priors
     _, S, V = np.linalg.svd(np.concatenate([at.jacobian, rows]), full_matrices=True)
     tied = V[np.append(S, np.zeros(len(V)))[: len(V)] <= FLAT * S[0]]

@@ -73,10 +73,8 @@ def information_of(at: Minimum) -> tuple[Array, float, float]:
 
 
 def covariance_of(at: Minimum) -> tuple[Array, list[float], float]:
-    """Return the covariance of the logarithms, the squared quantiles of the two levels, and how much the loss inflates them.
-
-    Inputs at a bound have nan, and inputs that nothing determines infinity on the diagonal and nan beside it.
-    """
+    """Return the covariance of the logarithms, the squared quantiles of both levels, and how much the loss inflates them."""
+    # Inputs at a bound have nan, and inputs that nothing determines infinity on the diagonal and nan beside it.
     from scipy.stats import norm, t
 
     free = np.nonzero(np.logical_not(at.at_bound))[0]
@@ -98,10 +96,7 @@ def covariance_of(at: Minimum) -> tuple[Array, list[float], float]:
 def ends_of(
     found: Minimum, covariance: Array, quantiles: list[float], inflation: float, profile: bool, report: Callable[[str], None]
 ) -> tuple[Array, Minimum]:
-    """Return the ends of the intervals of each free input, shape (p, levels, 2), and the minimum that they belong to.
-
-    An end is infinite where an interval of the logarithm is open within the bounds.
-    """
+    """Return the ends of the intervals, infinite where open, shape (p, levels, 2), and the minimum that they belong to."""
     if not profile:
         half = np.sqrt(np.outer(np.diag(covariance), quantiles))
         half = np.where(half < WIDEST, half, math.inf)[..., None]
@@ -177,10 +172,7 @@ def _side(
 def _crossing(
     function: Callable[[float], float], known: list[tuple[float, float, Array]], target: float, width: float, reach: float
 ) -> float:
-    """Return where a function that rises nearly linearly from zero crosses a target; infinity if not within ``reach``.
-
-    The function may be infinite beyond some distance.
-    """
+    """Return where a function that rises nearly linearly from zero, perhaps to infinity, crosses a target; else infinity."""
     low, low_value = max(((d, v) for d, v, _ in known if v <= target), default=(0.0, 0.0))
     above = [(d, v) for d, v, _ in known if d > low]
     high, high_value = min(above, default=(math.inf, math.inf))

@@ -175,12 +175,8 @@ def minimise(
     flat: float = NO_INFORMATION,
     near: float = 0.0,
 ) -> Minimum:
-    """Return the minimum of q near a start, at a given scale of the noise.
-
-    Inputs stay at the start along directions that change no residual.
-    """
-    # Imported here because it takes longer than the rest of the package.
-    from scipy.optimize import least_squares
+    """Return the minimum of q near a start, where inputs stay along directions that change no residual."""
+    from scipy.optimize import least_squares  # slow to import
 
     fixed = fixed or {}
     moving = np.array([i for i in range(len(start)) if i not in fixed], dtype=int)
@@ -262,10 +258,7 @@ def minimise(
 
 
 def _held(J: Array, flat: float) -> Array:
-    """Return rows, shape (p, p), that hold a Gauss-Newton step where J has no information and leave it alone elsewhere.
-
-    Their residuals are zero.  Without them rounding over rounding would move inputs that do not matter.
-    """
+    """Return rows, shape (p, p), of residuals that are zero, which hold a Gauss-Newton step where J has no information."""
     _, S, V = np.linalg.svd(J, full_matrices=True)
     S = np.append(S, np.zeros(len(V)))[: len(V)]
     size = float(S[0]) if S[0] > 0 else 1.0

@@ -86,10 +86,7 @@ NEXT_LEVEL = 1.1  # Ratio of neighbouring values from which they belong to two s
 def prepared(
     table: TextTable, settings: FitSettings, known: Callable[[str], bool], *, signed: bool = False
 ) -> tuple[TextTable, list[str], str, FitSettings, list[str]]:
-    """Return a table with friction and speed made of what a rig measured, ``signed`` with the direction of the force.
-
-    Then follow a sentence on each that was made, the header of the runs, the settings without their units, and what there is.
-    """
+    """Return the table with friction and speed, what was made of what, the header of runs, the settings, and what there is."""
     table = _with_stated_ratio(table, settings)
     found, source = _rig_columns(table, settings), table
     said, ours = list[str](), set[str]()
@@ -319,10 +316,7 @@ def _over(values: Array, by: Array) -> Array:
 
 
 def _length(table: TextTable, pattern: str, given: float | None) -> tuple[Array, str] | None:
-    """Return a length for each row and where it is from: the case, a column, or a line above the header; None if nowhere.
-
-    A diameter is halved.
-    """
+    """Return a length, of a diameter half, for each row, and the case, column or line that it is from; None if nowhere."""
 
     def of_all(length: float, origin: str) -> tuple[Array, str]:
         return np.full(len(table.rows), length), f"{format_si(length, 'length', 4)} {origin}"
@@ -347,10 +341,7 @@ def _length(table: TextTable, pattern: str, given: float | None) -> tuple[Array,
 
 
 def stated_size(table: TextTable, pattern: str, dimension: str) -> tuple[float, int, str] | None:
-    """Return a length or force [SI] that other lines than the rows give with its unit, the row and its name; None if none.
-
-    A diameter is halved.
-    """
+    """Return a length, of a diameter half, or force [SI] that lines beside the rows give, the row and its name; or None."""
     found = [
         (_radius_of(name) * float(value) * si_factor(unit, dimension, name), number, name)
         for number, name, value, unit in stated_in(table, pattern)

@@ -26,19 +26,15 @@ NAMES = {
 def inputs_said(
     table: TextTable, settings: FitSettings, name: str, columns: list[str]
 ) -> tuple[list[str], dict[str, Any], list[str]]:
-    """Return sentences on what a file says of all of its rows, these inputs in SI units, and notes on what was not used.
-
-    Its name counts for more than its lines, and the case for more than its name.
-    """
-    path = table.path
+    """Return sentences on what a file says of all of its rows, these inputs in SI units, and notes on what was not used."""
     lines, unread = _lines(table, settings, [key for key in NAMES if key not in columns])
     if "preset" not in settings.liquid:
         lines.pop("temperature", None)  # by which nothing is known
     try:
         of_name = {} if settings.file_names is None else settings.file_names.values(name)
     except InputError as problem:
-        raise InputError(f"{path}: {problem}") from None
-    given: dict[str, Any] = {}
+        raise InputError(f"{table.path}: {problem}") from None
+    given: dict[str, Any] = {}  # the name of the file counts for more than its lines, and the case for more than its name
     of_case = [settings.files[key] for key in entries_of(settings, name)]
     for rank in ({key: text for key, [(_, text, _), *_] in lines.items()}, of_name, *of_case):
         given = _overruled(given, rank)
@@ -50,7 +46,7 @@ def inputs_said(
             refuse_late_value(table, number, key)
     if not {"load", "curve"} & {*columns, *given}:
         stated_size(table, PATTERNS["normal_force"], "force")  # two forces on a cylinder, whose load they are not
-    found = inputs_of_file(path, given, settings.inputs, settings.liquid) if given else {}
+    found = inputs_of_file(table.path, given, settings.inputs, settings.liquid) if given else {}
     said = [f"{key} {text} by row {row}" for key, [(_, text, row), *_] in lines.items() if given.get(key) == text]
     said += [f"{key} {text} by the name of the file" for key, text in of_name.items() if given.get(key) == text]
     return said, found, [note for key, note in unread.items() if key not in given]

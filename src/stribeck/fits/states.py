@@ -76,10 +76,7 @@ class States:
 
     @one_blas_thread
     def parts(self, groups: Groups, changes: Changes, inputs: Inputs | None = None) -> FrictionParts:
-        """Return the parts of states in a row, with derivatives along changes of the model, off the atlas or solved.
-
-        ``inputs`` are those of the friction, by default of the contact.
-        """
+        """Return the parts of states, with derivatives along changes of the model; ``inputs`` are by default the contact's."""
         if self.uses_atlas and not self.must_solve:
             try:
                 parts = atlas.friction_parts(groups, self.definition)
