@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -111,16 +111,11 @@ class LoopFit(WithFittedInputs, Exported, Told, ByValue):
 
     def to_dict(self) -> dict[str, Any]:
         """Return values, intervals, rows and outcome, ready for JSON."""
-        found = {
+        names = ("inputs", "noise", "autocorrelation", "over", "undetermined", "notes")
+        found = {name: getattr(self, name) for name in names} | {
             "outcome": self.outcome.name,
             "message": self.outcome.value,
-            "inputs": [each.to_dict() for each in self.inputs],
-            "noise": self.noise,
-            "autocorrelation": self.autocorrelation,
-            "over": self.over,
             "definition": self.stroke.definition,
-            "undetermined": [asdict(each) for each in self.undetermined],
-            "notes": self.notes,
             "rows": {name: values for name, (_, values, _, _) in self._rows.items()},
             "units": units_of(self._rows),
         }

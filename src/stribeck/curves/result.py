@@ -6,6 +6,7 @@ import math
 import re
 from dataclasses import dataclass, field, replace
 from numbers import Real
+from types import SimpleNamespace
 from typing import Annotated, Any, Self
 
 import numpy as np
@@ -337,7 +338,12 @@ class StribeckCurve(Exported, Shown, ByValue):
         read = [self.observable(name) for name in ("contact_load_share", "central_gap", "minimum_gap")]
         rows = zip(np.log(self.values).tolist(), *(each.tolist() for each in (*read, self.friction.fluid)), strict=True)
         given, groups_at = (self.boundary_friction, self.beta), self._path.source.coordinate.groups_at
-        return [law_notes(groups_at(s), self.contact, _Read(*each), given, self.definition) for s, *each in rows]
+
+        def state(share: float, central: float, least: float, fluid: float) -> SimpleNamespace:
+            gaps = {"central_gap": central, "minimum_gap": least}
+            return SimpleNamespace(contact_load_share=share, **gaps, viscous_friction=lambda beta, definition: fluid)
+
+        return [law_notes(groups_at(s), self.contact, state(*each), given, self.definition) for s, *each in rows]
 
     @property
     def error_estimate(self) -> float:
@@ -445,17 +451,3 @@ def with_contact(curve: StribeckCurve, contact: Contact) -> StribeckCurve:
     source: Any = curve._path.source
     moved = replace(source, coordinate=replace(source.coordinate, base=contact))
     return replace(curve, _path=replace(curve._path, source=moved))
-
-
-@dataclass(frozen=True)
-class _Read:
-    """The values of a state on which notes on the contact law depend."""
-
-    contact_load_share: float
-    central_gap: float
-    minimum_gap: float
-    viscous: float
-
-    def viscous_friction(self, beta: float, definition: Definition) -> float:
-        """Return the viscous friction, which is known for the curve's own beta and definition alone."""
-        return self.viscous

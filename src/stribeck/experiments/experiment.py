@@ -77,10 +77,10 @@ class Prediction(Exported, Told):
 
     experiment: Annotated[Experiment, "the experiment"]
     model: Annotated[str, "name of the model"]
-    predicted: Annotated[Array, "friction by the model, over that of a row where the experiment compares ratios, shape (n,)"]
-    predicted_error: Annotated[Array, "its standard error by those of the inputs, relative, shape (n,)"]
-    measured: Annotated[Array, "what was measured, and its relative standard error, shape (n,)"]
-    measured_error: Annotated[Array, "what was measured, and its relative standard error, shape (n,)"]
+    predicted: Annotated[Array, "predicted without a fit, over a row where the experiment compares ratios", "1"]
+    predicted_error: Annotated[Array, "its relative standard error by the inputs", "1"]
+    measured: Annotated[Array, "measured, likewise", "1"]
+    measured_error: Annotated[Array, "its relative standard error", "1"]
 
     @property
     def ratio(self) -> Array:
@@ -128,15 +128,9 @@ class Prediction(Exported, Told):
         return Card(self.headline, (), (), table=rows, right=(1, 2, 3, 4, 5), sentences=tuple(filter(None, sentences)))
 
     def _labelled(self) -> Labelled:
-        numbers = {
-            "predicted": (self.predicted, "predicted without a fit"),
-            "predicted_error": (self.predicted_error, "its relative standard error by the inputs"),
-            "measured": (self.measured, "measured"),
-            "measured_error": (self.measured_error, "its relative standard error"),
-            "ratio": (self.ratio, "measured over predicted"),
-            "ratio_error": (self.ratio_error, "its relative standard error"),
-        }
-        columns: Any = {name: (ROW, values, "1", meaning) for name, (values, meaning) in numbers.items()}
+        columns: Any = {name: (ROW, getattr(self, name), "1", each.meaning) for name, each in self._words.items() if each.unit}
+        columns["ratio"] = (ROW, self.ratio, "1", "measured over predicted")
+        columns["ratio_error"] = (ROW, self.ratio_error, "1", "its relative standard error")
         coordinate: Any = {ROW: (ROW, np.array(self.experiment.labels, dtype=object), "1", "row of the experiment")}
         about = {"title": self.experiment.title, "model": self.model, "source": self.experiment.source}
         return columns, coordinate, about | {"licence": self.experiment.licence}

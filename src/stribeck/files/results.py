@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, is_dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -27,7 +28,9 @@ RETURNED = {
 
 
 def ready_for_json(content: Any) -> Any:
-    """Return content for JSON; what is not finite becomes None, as JSON knows no nan."""
+    """Return content for JSON, results by their ``to_dict``; what is not finite becomes None, as JSON knows no nan."""
+    if is_dataclass(content) and not isinstance(content, type):
+        content = content.to_dict() if isinstance(content, Record) else asdict(content)
     if isinstance(content, dict):
         return {name: ready_for_json(value) for name, value in content.items()}
     if hasattr(content, "tolist"):  # of arrays

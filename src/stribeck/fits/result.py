@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import Annotated, Any
 
@@ -240,11 +240,12 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
 
     def to_dict(self) -> dict[str, Any]:
         """Return values, intervals (None where open), tests, rows and outcome, ready for JSON."""
-        found = {
-            "converged": self.converged,
+        names = "converged inputs covariance correlation noise logarithmic robust quality undetermined notes definition"
+        names += " solver_shift model_error evaluations"
+        found = {name: getattr(self, name) for name in names.split()} | {
             "outcome": self.outcome.name,
             "message": self.outcome.value,
-            "inputs": [each.to_dict() for each in self.inputs],
+            "contact_law": self.law,
             "held": [
                 {
                     "name": name,
@@ -253,19 +254,6 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
                 }
                 for name in self.held
             ],
-            "covariance": self.covariance,
-            "correlation": self.correlation,
-            "noise": self.noise,
-            "logarithmic": self.logarithmic,
-            "robust": self.robust,
-            "quality": asdict(self.quality),
-            "undetermined": [asdict(each) for each in self.undetermined],
-            "notes": self.notes,
-            "definition": self.definition,
-            "contact_law": self.law,
-            "solver_shift": self.solver_shift,
-            "model_error": self.model_error,
-            "evaluations": self.evaluations,
             "curves": [
                 {"name": name}
                 | {key: value for key in (*FREE_INPUTS, "speed") if (value := getattr(contact, key, None)) is not None}
