@@ -17,7 +17,7 @@ from stribeck.contacts.groups import BASE_MODEL
 from stribeck.contacts.parts import part_names
 from stribeck.contacts.with_parts import exponents_of, factor_exponents, models_at_both_sides
 from stribeck.equations.point.observables import WITHIN
-from stribeck.numerics.dual import Dual
+from stribeck.numerics.dual import Dual, by_logarithms
 from stribeck.numerics.settings import LOG_STEP
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outputs import GROUPS
@@ -97,11 +97,10 @@ def _sensitivities(
     """Return the sensitivities, given what asperities rub by, viscous parts, and slopes by groups and by changes."""
     groups, asperities, rule = contact.groups, contact.friction_of_asperities, RULES[contact.groups.geometry]
     inputs, count = rule.of_contact(contact), slopes.shape[1]
-    rows = np.eye(count + len(inputs))
-    amount, *parts = (Dual(value, by @ rows[:count]) for value, by in zip(values.tolist(), slopes, strict=True))
-    speed, load = (Dual(value, value * row) for value, row in zip(map(float, (groups.speed, groups.load)), rows, strict=False))
-    sizes = {name: value if math.isfinite(value) else 0.0 for name, value in inputs.items()}
-    taken = {name: Dual(inputs[name], size * row) for (name, size), row in zip(sizes.items(), rows[count:], strict=True)}
+    none = np.zeros(len(inputs))
+    amount, *parts = (Dual(value, np.append(by, none)) for value, by in zip(values.tolist(), slopes, strict=True))
+    speed, load = by_logarithms(map(float, (groups.speed, groups.load)), count + len(inputs))
+    taken = dict(zip(inputs, by_logarithms(inputs.values(), count + len(inputs), count), strict=True))
     given = {**taken, "far": far_film(groups.model), "within": within}
     rubbing = asperities.factor(contact) * rule.sliding_factor(groups, taken) * amount
     friction = rubbing + rule.viscous(dict(zip(rule.parts(definition), parts, strict=True)), speed, load, given, definition)

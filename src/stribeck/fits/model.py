@@ -34,7 +34,7 @@ from stribeck.equations.sensitivity import Change
 from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.states import Changes, FrictionParts, Inputs, States, places, together
-from stribeck.numerics.dual import Dual
+from stribeck.numerics.dual import Dual, by_logarithms
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError
 
@@ -284,16 +284,11 @@ class FrictionModel:
         fixed = {"far": far_film(self.model), "model": self.model}
         # By the logarithms of the groups, by the numbers of the model, and by the logarithms of the inputs.
         known = len(found.slopes[0])
-        rows = np.eye(known + len(inputs))[:, :, None]
         of_inputs = np.zeros((len(inputs), len(x)))
         by_part = (np.vstack([each, of_inputs]) for each in found.slopes[1:-1])
         moved = {name: Dual(part, slopes) for (name, part), slopes in zip(parts.items(), by_part, strict=True)}
-        sizes = (np.where(np.isfinite(value), value, 0.0) for value in inputs.values())
-        taken = {
-            name: Dual(inputs[name], rows[:, known + i] * size)
-            for i, (name, size) in enumerate(zip(inputs, sizes, strict=True))
-        }
-        speed, load = (Dual(x[:, d], rows[:, d] * x[:, d]) for d in range(2))
+        speed, load = by_logarithms(x[:, :2].T, known + len(inputs))
+        taken = dict(zip(inputs, by_logarithms(inputs.values(), known + len(inputs), known), strict=True))
         viscous = self.rule.viscous(moved, speed, load, {**taken, **fixed}, states.definition)
         rubbing = self.signs[curve] * x[:, 3]
         contact, fluid = rubbing * found.values[0], viscous.value

@@ -10,7 +10,7 @@ Source: [Griewank & Walther 2008] Evaluating Derivatives, chapter 3 (forward mod
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import Any, Self
 
@@ -171,6 +171,12 @@ class Dual(FirstOrder):
         if function in (np.zeros_like, np.ones_like, np.full_like, np.shape, np.ndim):
             return function(given[0].value, *given[1:], **options)
         return NotImplemented
+
+
+def by_logarithms(values: Iterable[Any], count: int, first: int = 0) -> list[Dual]:
+    """Return positive numbers with derivatives by their own logarithms, among so many from a place on; infinity has none."""
+    sizes = ((each, np.where(np.isfinite(each), each, 0.0)) for each in values)
+    return [Dual(each, np.multiply.outer(row, size)) for (each, size), row in zip(sizes, np.eye(count)[first:], strict=False)]
 
 
 def value_of(given: Any) -> Any:

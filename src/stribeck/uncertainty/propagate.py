@@ -19,7 +19,7 @@ from stribeck.curves.regime import Transition
 from stribeck.curves.sensitivities import with_slopes
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.equations.point.observables import WITHIN
-from stribeck.numerics.dual import Dual
+from stribeck.numerics.dual import by_logarithms
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.keywords import known_names
@@ -225,11 +225,10 @@ def _exponents(solution: Any, inputs: Mapping[str, float], definition: Definitio
     groups, rule = solution.groups, RULES[solution.groups.geometry]
     parts = {name: float(getattr(solution, name)) for name in rule.parts(definition)}
     own = getattr(solution.observables, "_within", None)
-    finite = {name: value for name, value in inputs.items() if 0 < value < math.inf}
     if not groups.speed > 0:
         return {}
-    rows = np.eye(len(finite))
-    moved = {name: Dual(value, value * row) for (name, value), row in zip(finite.items(), rows, strict=True)}
+    finite = {name: value for name, value in inputs.items() if 0 < value < math.inf}
+    moved = dict(zip(finite, by_logarithms(finite.values(), len(finite)), strict=True))
     within = None if own is None else with_slopes(own, np.zeros((len(WITHIN), len(finite))))
     given = {**inputs, **moved, "far": far_film(groups.model), "within": within}
     here = rule.viscous(parts, groups.speed, groups.load, given, definition)

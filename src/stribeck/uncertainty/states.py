@@ -21,7 +21,7 @@ from stribeck.contacts.groups import BASE_MODEL, Geometry, Model
 from stribeck.contacts.with_parts import models_at_both_sides
 from stribeck.curves.sensitivities import Within, with_slopes
 from stribeck.equations.point.observables import WITHIN
-from stribeck.numerics.dual import Dual
+from stribeck.numerics.dual import Dual, by_logarithms
 from stribeck.numerics.scattered import Scattered, lengths_of
 from stribeck.quantities.formats import format_percent
 from stribeck.quantities.lazy import cached_property
@@ -152,10 +152,7 @@ class SampledStates:
         wanted = (*SHARES, *self.logs, *names, *(WITHIN if self._ends_near else ()))
         observed = self.neighbours.observed(groups, wanted, [change for *_, change in changed], inputs=inputs)
         by = dict(zip(wanted, map(Dual, observed.values, observed.slopes), strict=True))
-        rows = np.eye(3 + len(changed))
-        speed, load = (
-            Dual(float(value), float(value) * row) for value, row in zip((groups.speed, groups.load), rows, strict=False)
-        )
+        speed, load = by_logarithms(map(float, (groups.speed, groups.load)), 3 + len(changed))
 
         def viscous_of(parts: Mapping[str, Any], speed: Any, load: Any, model: Model, within: Within | None = None) -> Any:
             return rule.viscous(parts, speed, load, {**inputs, "far": far_film(model), "within": within}, self.definition)
