@@ -9,7 +9,7 @@ import numpy as np
 
 from stribeck.bench.passes import RUN_IN, Pass, Series, directions, passes_of
 from stribeck.bench.points import Point, points_of, run_in_of
-from stribeck.bench.raw import Raw, read_raw
+from stribeck.bench.raw import read_raw
 from stribeck.bench.result import INPUTS, BenchCurve
 from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import FitSettings, with_bench_keys
@@ -112,7 +112,11 @@ def read(
     curves: list[tuple[str, dict[str, float]]] = []
     passes: list[Pass] = []
     for f, (path, one) in enumerate(zip(paths, series, strict=True)):
-        own = [_curve(path.name, one.raw, label, inputs, settings) for label, inputs in one.raw.curves]
+        names = {} if settings.file_names is None else settings.file_names.labels(path.name)
+        own = [
+            (" ".join(filter(None, [names.get("fluid", ""), label])), inputs | one.raw.said)
+            for label, inputs in one.raw.curves
+        ]
         for each in own:
             if each not in curves:
                 curves.append(each)
@@ -167,12 +171,6 @@ def _settings(given: str | os.PathLike[str] | Case | FitSettings | None) -> FitS
 def _of_bench(text: str) -> str:
     """Return what a reader of data files says, with the table in which a rig has it."""
     return text.replace("[fit", "[bench")
-
-
-def _curve(file: str, raw: Raw, label: str, inputs: dict[str, float], settings: FitSettings) -> tuple[str, dict[str, float]]:
-    """Return name and inputs of a curve of a file."""
-    named = {} if settings.file_names is None else settings.file_names.labels(file)
-    return " ".join(filter(None, [named.get("fluid", ""), label])), inputs | raw.said
 
 
 def _labels(curves: Sequence[tuple[str, dict[str, float]]]) -> tuple[str, ...]:

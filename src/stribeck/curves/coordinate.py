@@ -41,18 +41,17 @@ class Coordinate:
 
     def groups_at(self, s: float) -> Groups:
         """Return the groups at coordinate s."""
-        found = self._formed.get(s)
-        if found is None:
-            found = self._formed[s] = self._form(s)
-        return found
-
-    def _form(self, s: float) -> Groups:
-        if isinstance(self.base, Contact):
-            varying = copy.copy(self.base)  # nothing is checked again: of a model that varies, each series takes ten groups
-            object.__setattr__(varying, self.over, math.exp(s))
-            return varying.groups
-        varied: dict[str, Any] = {self.over: math.exp(s)}
-        return replace(self.base, **varied)
+        if s not in self._formed:
+            varied: dict[str, Any] = {self.over: math.exp(s)}
+            if isinstance(self.base, Contact):
+                varying = copy.copy(
+                    self.base
+                )  # nothing is checked again: of a model that varies, each series takes ten groups
+                vars(varying).update(varied)
+                self._formed[s] = varying.groups
+            else:
+                self._formed[s] = replace(self.base, **varied)
+        return self._formed[s]
 
     def groups_along(self, values: Array) -> Groups:
         """Return the groups at many values of the coordinate, as arrays."""

@@ -29,29 +29,25 @@ def curve_dict(curve: Any) -> dict[str, Any]:
     about, columns = about_problem(curve.groups, curve.contact), _columns(curve)
     units = {name: unit for name, (_, unit, _) in columns.items() if not name.endswith("_error") and name not in WORDS}
     return {
-        "over": curve.over,
         "unit": curve.unit,
-        "definition": curve.definition,
         **about,
+        **_settings(curve),
         "units": (about["units"] or {}) | units,
-        "rtol": curve.rtol,
-        "boundary_friction": _coefficient(curve),
-        "beta": curve.beta,
         "minimum": None if curve.minimum is None else curve.minimum.to_dict(),
         **marks_of(curve),
         "points": {"value": curve.values.tolist(), **{name: each.tolist() for name, (each, _, _) in columns.items()}},
-        "requested_points": curve.requested,
         "complete": curve.outcome.ok,
-        "error_estimate": curve.error_estimate,
         "outcome": curve.outcome.name,
         "message": curve.outcome.value,
         "notes": list(curve.notes),
     }
 
 
-def _coefficient(curve: Any) -> float:
-    """Return the friction coefficient of the dry contact, nan where asperities have another friction."""
-    return float(getattr(as_asperity_friction(curve.boundary_friction), "boundary_friction", math.nan))
+def _settings(curve: Any) -> dict[str, Any]:
+    """Return what was asked of a curve, and its error; the friction coefficient is nan where asperities have another one."""
+    named = {name: getattr(curve, name) for name in ("over", "definition", "rtol", "beta", "error_estimate")}
+    coefficient = float(getattr(as_asperity_friction(curve.boundary_friction), "boundary_friction", math.nan))
+    return named | {"boundary_friction": coefficient, "requested_points": curve.requested}
 
 
 def marks_of(curve: Any) -> dict[str, Any]:
@@ -104,14 +100,8 @@ def _attributes(curve: Any) -> dict[str, Any]:
         "outcome": curve.outcome.value,
         "complete": int(finished),
         "points": len(curve),
-        "requested_points": curve.requested,
-        "over": curve.over,
-        "definition": curve.definition,
         **problem_attributes(curve.groups, curve.contact, is_smooth, curve.over),
-        "rtol": curve.rtol,
-        "error_estimate": curve.error_estimate,
-        "boundary_friction": _coefficient(curve),
-        "beta": curve.beta,
+        **_settings(curve),
         f"minimum_{curve.over}": minimum.value if minimum else math.nan,
         "minimum_friction": minimum.friction if minimum else math.nan,
         "transition_names": "; ".join(mark.name for mark in marks),

@@ -221,14 +221,11 @@ def _models(models: str | Mapping[str, Mapping[str, Any]], contact: Contact, row
         for each in (models, *(models.values() if isinstance(models, Mapping) else ())):
             checked_kind("models", each, Mapping, "a dictionary of dictionaries, as {'a name': {'beta': 0.05}}")
         return dict(models)
-    if models not in MODEL_KINDS:
-        known = " or ".join(map(repr, MODEL_KINDS))
-        raise InputError(f"models = {show(models)} must be {known}, or in Python a mapping from names to models.")
-    return MODEL_KINDS[models](contact, rows)
-
-
-def _cavitations(contact: Contact, rows: Measurements) -> dict[str, Any]:
-    return {name: {"cavitation": each, "cavity_pressure": 0.0} for name, each in (("full film", "none"), ("exit", "exit"))}
+    if models == "cavitation":
+        return {name: {"cavitation": each, "cavity_pressure": 0.0} for name, each in (("full film", "none"), ("exit", "exit"))}
+    if models == "fluid":
+        return _fluids(contact, rows)
+    raise InputError(f"models = {show(models)} must be 'cavitation' or 'fluid', or in Python a mapping from names to models.")
 
 
 def _fluids(contact: Contact, rows: Measurements) -> dict[str, Any]:
@@ -240,10 +237,6 @@ def _fluids(contact: Contact, rows: Measurements) -> dict[str, Any]:
         "carreau": {"fluid": Carreau(1 / rate, 0.7), "free": ("relaxation_time", "exponent")},
         "eyring": {"fluid": Eyring(contact.viscosity * rate), "free": ("eyring_stress",)},
     }
-
-
-# Models that are compared by a name
-MODEL_KINDS: dict[str, Callable[[Contact, Measurements], dict[str, Any]]] = {"cavitation": _cavitations, "fluid": _fluids}
 
 
 def _laws(contact: Contact) -> dict[str, AsperityLaw | None]:

@@ -4,7 +4,7 @@ import json
 import math
 import os
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
@@ -21,7 +21,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.parts import PART_INPUTS
 from stribeck.files.toml import read_toml
 from stribeck.files.writing import PathLike, atomic_write
-from stribeck.fits.result import Fit
+from stribeck.fits.result import Fit, FittedInput
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.schema import has_error, split_error
 from stribeck.quantities.standard_errors import StandardErrors, correlation_table
@@ -71,43 +71,31 @@ def check_fitted_case(case: Case, names: Sequence[str], path: PathLike) -> None:
         known["beta"] = contact.beta
     changed = contact.replace(**{name: value * TRIAL_FACTOR for name, value in known.items()})
     with TemporaryDirectory() as folder:
-        free = [name for name in names if name in known]
-        _write(case, changed, free, StandardErrors(), lambda name: [], [], Path(folder) / "case.toml", path, {})
+        _write(case, changed, [name for name in names if name in known], Path(folder) / "case.toml", path)
 
 
 def write_fitted_case(fit: Fit, case: Case, path: PathLike, *, force: bool = False) -> None:
     """Write the case of a fit with the fitted values, everything else as it was."""
     if not fit.converged:
         raise InputError(f"no fitted case is written. {fit.outcome.value}")
-    said = fit.quality.messages[0] if fit.quality.messages else "No systematic misfit detected in its residuals."
-    about = [f"# Fitted by stribeck {version('stribeck')} to {_sources(fit)}. {fit.outcome.value} {said}"]
-    names = list(dict.fromkeys(each.name for each in fit.inputs))
     with atomic_write(path, (".toml",), force=force) as temporary:
-        shared = {each.name: each.value for each in fit.inputs if each.is_factor and each.curve is None}
-        _write(case, fit.contact, names, fit.errors, lambda name: _comments(name, fit), about, temporary, path, shared)
+        _write(case, fit.contact, list(dict.fromkeys(each.name for each in fit.inputs)), temporary, path, fit)
 
 
-def _sources(fit: Fit) -> str:
-    names = dict.fromkeys(fit.data.files)
-    return ", ".join(names) if names else Path(fit.data.path).name
-
-
-Comments = Callable[[str], list[str]]
+def _about(fit: Fit) -> str:
+    """Return the line that says where fitted values are from."""
+    sources = ", ".join(dict.fromkeys(fit.data.files)) or Path(fit.data.path).name
+    said = fit.quality.messages[0] if fit.quality.messages else "No systematic misfit detected in its residuals."
+    return f"# Fitted by stribeck {version('stribeck')} to {sources}. {fit.outcome.value} {said}"
 
 
 def _write(
-    case: Case,
-    contact: Contact,
-    names: Sequence[str],
-    errors: StandardErrors,
-    comments: Comments,
-    about: list[str],
-    temporary: Path,
-    path: PathLike,
-    factors: Mapping[str, float],
+    case: Case, contact: Contact, names: Sequence[str], temporary: Path, path: PathLike, fit: Fit | None = None
 ) -> None:
-    """Write the case with the values of a contact and their errors, and check that what is read back is that contact."""
-    edits = _edits(case, contact, names, errors, comments)
+    """Write the case with the values of a contact, as a fit gives them, and check that what is read back is that contact."""
+    inputs = () if fit is None else fit.inputs
+    factors = {each.name: each.value for each in inputs if each.is_factor and each.curve is None}
+    edits = _edits(case, contact, names, StandardErrors() if fit is None else fit.errors, inputs)
     for kind in ("curves", "files"):  # the values of all curves have the factor that they share
         for owner, given in case.tables.get("fit", {}).get(kind, {}).items():
             for name in given.keys() & factors.keys():
@@ -115,7 +103,9 @@ def _write(
                 line = _entry(name, row.checked(given[name]) * factors[name], row.dimension)
                 edits.at |= {(f"fit.{kind}.{key}", name): [line] for key in (owner, json.dumps(owner), f"'{owner}'")}
     text = case.path.read_text(encoding="utf-8-sig")
-    temporary.write_text("\n".join([*about, *_edited(text, edits, case.path.parent)]) + "\n", encoding="utf-8")
+    temporary.write_text(
+        "\n".join([*map(_about, filter(None, [fit])), *_edited(text, edits, case.path.parent)]) + "\n", encoding="utf-8"
+    )
     try:
         back = load_case(temporary).contact
     except InputError as problem:
@@ -146,7 +136,9 @@ class _Edits:
         self.at |= {(table, other): [] for other in others}
 
 
-def _edits(case: Case, contact: Contact, names: Sequence[str], of_names: StandardErrors, comments: Comments) -> _Edits:
+def _edits(
+    case: Case, contact: Contact, names: Sequence[str], of_names: StandardErrors, fitted_inputs: Sequence[FittedInput]
+) -> _Edits:
     """Return what changes in the file of a case whose contact has other values of some inputs."""
     errors = StandardErrors({name: each for name, each in case.errors.items() if name not in names}) | of_names
     edits, given, fitted = _Edits({}, {}, set()), case.tables.get("contact", {}), set(names)
@@ -159,7 +151,10 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], of_names: Standar
         if free_of_table == ["roughness"] and case.fit.scales_surface and not SPECTRUM & set(case.tables[table]):
             left = {name: each for name, each in errors.items() if name not in ERRORS_OF_SURFACES.values()}
             errors = StandardErrors(left) | of_names
-            lines = [*comments("roughness"), _entry("h_rms", contact.roughness, "length", of_names.get("roughness"))]
+            lines = [
+                *_comments("roughness", fitted_inputs),
+                _entry("h_rms", contact.roughness, "length", of_names.get("roughness")),
+            ]
             lines += [f'beta_error = "{100 * of_names["beta"]:.4g} %"'] if "beta" in of_names else []
             if sheet:
                 edits.at |= {("contact", key): [] for key in sheet}
@@ -174,7 +169,9 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], of_names: Standar
                 edits.removed.add(table)
             edits.at |= {("contact", key): [] for key in sheet}
             edits.added["contact"] = [
-                line for name in INPUTS_OF_SURFACES for line in (*comments(name), _entry_of(name, contact, errors)) if line
+                line
+                for name in INPUTS_OF_SURFACES
+                for line in (*_comments(name, fitted_inputs), _entry_of(name, contact, errors))
             ]
         names = [name for name in names if name not in INPUTS_OF_SURFACES]
     for name in names:
@@ -182,7 +179,7 @@ def _edits(case: Case, contact: Contact, names: Sequence[str], of_names: Standar
         if value is None:
             continue
         place, key = _place(name)
-        lines = [*comments(name), _entry_of(name, contact, errors)]
+        lines = [*_comments(name, fitted_inputs), _entry_of(name, contact, errors)]
         stands_for = contact.INPUTS.stands_for
         instead = [each for each in given if stands_for.get(each, each) == name] if place == "contact" else []
         if instead == ["youngs_modulus", "poisson_ratio"]:
@@ -244,12 +241,9 @@ def _number(value: Any) -> float:
     return float(value)
 
 
-def _comments(name: str, fit: Fit) -> list[str]:
-    return [
-        f"# {each.label}: 95 % {each.texts[3]}" + ("" if each.curve is None else f", value {each.texts[0]}")
-        for each in fit.inputs
-        if each.name == name
-    ]
+def _comments(name: str, inputs: Sequence[FittedInput]) -> list[str]:
+    values = ((each, "" if each.curve is None else f", value {each.texts[0]}") for each in inputs if each.name == name)
+    return [f"# {each.label}: 95 % {each.texts[3]}{value}" for each, value in values]
 
 
 def _entry_of(name: str, contact: Contact, errors: StandardErrors) -> str:

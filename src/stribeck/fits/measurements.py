@@ -310,8 +310,8 @@ def read_measurements(path: Data, settings: FitSettings | None = None) -> Measur
         raise InputError("data is empty; give at least one file of measured friction.")
     paths = [each for each in several if isinstance(each, Path)]
     _check_entries(paths, settings)
-    once = list({_key(each): each for each in several}.values())
-    read = [each if isinstance(each, Measurements) else read_file(each, settings) for each in once]
+    once = {id(each) if isinstance(each, Measurements) else each.resolve(): each for each in several}
+    read = [each if isinstance(each, Measurements) else read_file(each, settings) for each in once.values()]
     return with_inputs_of_curves(read[0] if len(read) == 1 else _joined(read, settings), settings)
 
 
@@ -337,10 +337,6 @@ def missing_text(path: Path) -> str:
         return f"{path} does not exist, nor does its folder {folder}."
     near = nearest(path.name, [each.name for each in folder.iterdir()])
     return f"{path} does not exist; {f'did you mean {folder / near}?' if near else 'check its name and folder.'}"
-
-
-def _key(each: Path | Measurements) -> object:
-    return id(each) if isinstance(each, Measurements) else each.resolve()
 
 
 def _check_entries(paths: Sequence[Path], settings: FitSettings) -> None:
