@@ -207,13 +207,7 @@ def _zero_of_force(table: TextTable, settings: FitSettings) -> tuple[TextTable, 
     errors = errors_of_means([each - each.mean() for each in series])
     means = np.array([float(each.mean()) for each in series])
     texts = " and ".join(f"{format_si(m, 'force')} ± {format_error(e, 'force')}" for m, e in zip(means, errors, strict=True))
-    drift = (
-        ", on a straight line between the two"
-        if len(means) == 2
-        else ", on straight lines between them"
-        if len(means) > 2
-        else ""
-    )
+    drift = ("", ", on a straight line between the two", ", on straight lines between them")[min(len(means) - 1, 2)]
     said = f"Zero of the force by {int(apart.sum())} rows without load: {texts}, taken off{drift}."
     # Between two stretches on the straight line, else that of the nearest
     zero = np.interp(np.array(shorter.numbers, float), [float(of_rows[each].mean()) for each in stretches], means)

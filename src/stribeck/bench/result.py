@@ -74,22 +74,13 @@ class BenchCurve(Exported, Told, ByValue):
 
     def _card(self) -> Card:
         names = len(self.curves) > 1
-        heading = (
-            *(("curve",) if names else ()),
-            "speed",
-            "friction",
-            "95 %",
-            "rows",
-            "independent",
-            "difference of directions",
-        )
-        table = [heading]
+        table = [(*["curve"] * names, "speed", "friction", "95 %", "rows", "independent", "difference of directions")]
         for i in range(len(self)):
             known = math.isfinite(self.half_width[i])
             there = math.isfinite(self.difference[i])
             table.append(
                 (
-                    *((self.curves[self.curve[i]],) if names else ()),
+                    *[self.curves[self.curve[i]]] * names,
                     format_si(self.speed[i], "speed"),
                     f"{self.friction[i]:.4g}",
                     f"± {self.half_width[i]:.2g}" if known else "not known",
@@ -147,22 +138,18 @@ class BenchCurve(Exported, Told, ByValue):
             return [f"{value:.{digits}g}" if math.isfinite(value) else "" for value in values]
 
         columns: dict[str, list[str]] = {"curve": [self.curves[k] or "data" for k in self.curve]} if any(self.curves) else {}
-        speed, given = (
-            ("sum of speeds [m/s]" if self.rolls else "speed [m/s]"),
-            {name for each in self.inputs for name in each},
-        )
-        if "viscosity" not in given and np.isfinite(self.viscosity).all():
-            of_curve = np.array([float(np.mean(self.viscosity[self.curve == k])) for k in range(len(self.curves))])
-            if self._warms():  # friction depends on viscosity times speed
-                product = "viscosity times sum of speeds [Pa*m]" if self.rolls else "eta U [Pa*m]"
-                columns[product] = cells(self.viscosity * self.speed)
-                columns["rig speed [m/s]"] = cells(self.speed)
-                columns["local viscosity [Pa*s]"] = cells(self.viscosity)
-            else:
-                columns[speed] = cells(self.speed)
-            columns["viscosity [Pa*s]"] = cells(of_curve[self.curve])
+        given = {name for each in self.inputs for name in each}
+        finds_viscosity = "viscosity" not in given and np.isfinite(self.viscosity).all()
+        if finds_viscosity and self._warms():  # friction depends on viscosity times speed
+            product = "viscosity times sum of speeds [Pa*m]" if self.rolls else "eta U [Pa*m]"
+            columns[product] = cells(self.viscosity * self.speed)
+            columns["rig speed [m/s]"] = cells(self.speed)
+            columns["local viscosity [Pa*s]"] = cells(self.viscosity)
         else:
-            columns[speed] = cells(self.speed)
+            columns["sum of speeds [m/s]" if self.rolls else "speed [m/s]"] = cells(self.speed)
+        if finds_viscosity:
+            of_curve = np.array([float(np.mean(self.viscosity[self.curve == k])) for k in range(len(self.curves))])
+            columns["viscosity [Pa*s]"] = cells(of_curve[self.curve])
         columns["friction"] = cells(self.friction)
         if np.isfinite(self.half_width).any():
             columns["error"] = cells(self.error, 4)

@@ -266,8 +266,7 @@ def _rows(table: TextTable) -> tuple[tuple[str, ...], tuple[dict[str, Any], ...]
     missing = f"{FRICTION} or {FORCE} [N]" if len(measured) != 1 else ERROR if ERROR not in names else ""
     if missing:
         raise InputError(f"{table.path} needs one column {missing} among {show(', '.join(table.header))}.")
-    texts = [name for name in (ROW,) if name in names]
-    columns = {name: column for name, column in names.items() if name not in texts}
+    columns = {name: column for name, column in names.items() if name != ROW}
     read = {name: table.numbers_of(column, gaps=False) for name, column in columns.items()}
     units = {name: table.unit(column) for name, column in columns.items()}
     inputs = [name for name in columns if name not in (*measured, ERROR)]
@@ -278,7 +277,7 @@ def _rows(table: TextTable) -> tuple[tuple[str, ...], tuple[dict[str, Any], ...]
     for name in (*measured, ERROR):
         if not (np.isfinite(read[name]).all() and (read[name] > 0).all()):
             raise InputError(f"{table.path}: {name} must be positive in every row.")
-    labels = tuple(table.column(names[ROW])) if texts else tuple(map(str, range(1, len(table.rows) + 1)))
+    labels = tuple(table.column(names[ROW])) if ROW in names else tuple(map(str, range(1, len(table.rows) + 1)))
     is_force = measured[0] == FORCE
     factor, of_error = (si_factor(units[each], "force" if is_force else "number", each) for each in (*measured, ERROR))
     if factor != of_error:

@@ -120,7 +120,7 @@ def fit(
     report = _Progress(model, on_step)
     rtol = report.rtol = model.rtol_of_states(case.rtol)
     states = model.states(definition, rtol, report.count_state)
-    goal = objective(model, states, settings, settings.robust)
+    goal = objective(model, states, settings)
 
     found = _search(goal, definition, report)
     wanted_rtol = model.rtol_of_states(case.rtol, found.relative_noise)

@@ -90,9 +90,9 @@ class Objective:
         return float(self.loss(r).sum() + ((rows @ theta - means) ** 2).sum())
 
 
-def objective(model: FrictionModel, states: States, settings: FitSettings, robust: bool) -> Objective:
+def objective(model: FrictionModel, states: States, settings: FitSettings) -> Objective:
     """Return the objective that the data and the settings ask for."""
-    sigma, relative = error_of(model.data, settings), settings.relative_error
+    sigma, relative, robust = error_of(model.data, settings), settings.relative_error, settings.robust
     if sigma is None:
         return Objective(model, states, None, settings.noise == "relative", robust)
     if model.data.error is None and settings.absolute_error is None and relative is not None:

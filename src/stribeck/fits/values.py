@@ -121,22 +121,17 @@ def numbers(table: TextTable, name: str, meaning: str, settings: FitSettings) ->
 def checked(table: TextTable, name: str, meaning: str, settings: FitSettings) -> Array:
     """Return the numbers of a column in SI units; refuse one that is impossible."""
     values, cells = numbers(table, name, meaning, settings), table.column(name)
-    for i in np.flatnonzero(~np.isnan(values)).tolist():
-        where = f"{table.path}: row {table.numbers[i]}, column {show(name)}"
-        values[i] = _checked(float(values[i]), cells[i], name, meaning, where, settings)
-    return values
-
-
-def _checked(value: float, cell: str, name: str, meaning: str, where: str, settings: FitSettings) -> float:
     if settings.magnitudes and meaning in (*ABSCISSAS, "friction"):
-        value = abs(value)
-    if meaning == "friction" and value > LARGEST_FRICTION:
-        raise InputError(f"{where}: a friction coefficient of {value:g} is not plausible; {what_may_be_wrong(name)}.")
-    if meaning == "error" and value <= 0:
-        raise InputError(f"{where}: {show(cell)} must be positive; a standard error of zero would outweigh all rows.")
-    if meaning in settings.inputs.quantities and meaning != "speed":
-        try:
-            settings.inputs.quantities[meaning].checked(value)
-        except InputError as problem:
-            raise InputError(f"{where}: {problem}") from None
-    return value
+        values = np.abs(values)
+    for i in np.flatnonzero(~np.isnan(values)).tolist():
+        value, where = float(values[i]), f"{table.path}: row {table.numbers[i]}, column {show(name)}"
+        if meaning == "friction" and value > LARGEST_FRICTION:
+            raise InputError(f"{where}: a friction coefficient of {value:g} is not plausible; {what_may_be_wrong(name)}.")
+        if meaning == "error" and value <= 0:
+            raise InputError(f"{where}: {show(cells[i])} must be positive; a standard error of zero would outweigh all rows.")
+        if meaning in settings.inputs.quantities and meaning != "speed":
+            try:
+                settings.inputs.quantities[meaning].checked(value)
+            except InputError as problem:
+                raise InputError(f"{where}: {problem}") from None
+    return values
