@@ -14,6 +14,8 @@ from stribeck.curves.coordinate import Coordinate
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown, brief_text
+from stribeck.solver.path.hermite_path import HermitePath
+from stribeck.solver.path.path import SolvedPath
 
 Coefficients = tuple[Any, float, Definition]
 """boundary_friction or another friction of asperities, beta, and the definition of the viscous friction."""
@@ -51,14 +53,13 @@ class Source(ABC):
 
     coordinate: Coordinate
     rtol: float  # Relative tolerance of the observables
-    path: Any  # A path of Taylor series, or of solved states with their slopes
+    path: SolvedPath | HermitePath  # A path of Taylor series, or of solved states with their slopes
     has_state_slopes = False  # Whether states that are solved tell the slope of the friction better than :meth:`slopes`
 
     @property
     def outcome(self) -> Outcome:
         """CONVERGED, or why the path ends early."""
-        found: Outcome = self.path.outcome
-        return found
+        return self.path.outcome
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -69,8 +70,7 @@ class Source(ABC):
     @property
     def places(self) -> Array:
         """Places between which events are looked for, ascending: of a path those of all intervals."""
-        found: Array = self.path.places(INTERVAL_FRACTIONS)
-        return found
+        return self.path.places(INTERVAL_FRACTIONS)
 
     @property
     def states(self) -> int:

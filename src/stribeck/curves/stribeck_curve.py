@@ -117,11 +117,7 @@ def stribeck_curve(
     check_points(points)
     given_friction: Coefficients = boundary_friction, beta, definition
     # Curves end where asperities no longer matter, which their friction at small area tells.
-    at_small_area: Coefficients = (
-        as_asperity_friction(boundary_friction).coefficient_at_small_area(contact),
-        beta,
-        definition,
-    )
+    at_small_area: Coefficients = as_asperity_friction(boundary_friction).coefficient_at_small_area(contact), beta, definition
     coordinate = Coordinate(over, base)
     is_solved, is_line = check_method(method) == "solver", coordinate.geometry == "line"
     known = (0.0, math.inf) if contact is None else known_speeds(contact)

@@ -252,13 +252,12 @@ def _usable(data: Measurements) -> tuple[Measurements, list[str]]:
         return data, []
     left_out = ", ".join(name for i, name in enumerate(data.curves) if i not in kept)
     rows = np.isin(data.curve, kept)
-    new = {old: i for i, old in enumerate(kept.tolist())}
     return replace(
         data,
         values=data.values[rows],
         friction=data.friction[rows],
         error=None if data.error is None else data.error[rows],
-        curve=np.array([new[each] for each in data.curve[rows].tolist()]),
+        curve=np.searchsorted(kept, data.curve[rows]),
         curves=tuple(data.curves[i] for i in kept),
         inputs=tuple(data.inputs[i] for i in kept),
         rows=data.rows[rows],

@@ -104,7 +104,7 @@ def _write(
                 edits.at |= {(f"fit.{kind}.{key}", name): [line] for key in (owner, json.dumps(owner), f"'{owner}'")}
     text = case.path.read_text(encoding="utf-8-sig")
     temporary.write_text(
-        "\n".join([*map(_about, filter(None, [fit])), *_edited(text, edits, case.path.parent)]) + "\n", encoding="utf-8"
+        "\n".join([*([] if fit is None else [_about(fit)]), *_edited(text, edits, case.path.parent)]) + "\n", encoding="utf-8"
     )
     try:
         back = load_case(temporary).contact

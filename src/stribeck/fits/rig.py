@@ -271,17 +271,16 @@ def temperatures(table: TextTable) -> tuple[Array, str] | None:
 
 def _friction(table: TextTable, found: dict[str, list[str]], settings: FitSettings, signed: bool) -> tuple[Array, str] | None:
     """Return friction coefficients and how they were obtained; None if the rig gives none."""
-    if "friction_force" in found:
-        force = found["friction_force"][0]
-        if "normal_force" not in found:
-            stated = stated_size(table, PATTERNS["normal_force"], "force")
-            if stated is None:
-                return None
-            value, number, name = stated
-            values = numbers(table, force, "friction_force", settings) / value
-            said = f"friction = |{show(force)}| / {value:g} N, {show(name)} of row {number}"
-            return values if signed else np.abs(values), said
-        normal = found["normal_force"][0]
+    pressing: Array | float
+    if "friction_force" in found and "normal_force" not in found:
+        force, stated = found["friction_force"][0], stated_size(table, PATTERNS["normal_force"], "force")
+        if stated is None:
+            return None
+        pressing, number, name = stated
+        tangential = numbers(table, force, "friction_force", settings)
+        said = f"friction = |{show(force)}| / {pressing:g} N, {show(name)} of row {number}"
+    elif "friction_force" in found:
+        force, normal = found["friction_force"][0], found["normal_force"][0]
         units = {unit_in(table, force, "friction_force", settings), unit_in(table, normal, "normal_force", settings)}
         if len(units) == 1 and units != {""}:
             tangential, pressing = (table.numbers_of(name, lambda unit, where: 1.0) for name in (force, normal))
@@ -310,7 +309,7 @@ def _friction(table: TextTable, found: dict[str, list[str]], settings: FitSettin
     return values if signed else np.abs(values), said
 
 
-def _over(values: Array, by: Array) -> Array:
+def _over(values: Array, by: Array | float) -> Array:
     """Return quotients, NaN where they divide by zero."""
     return values / np.where(by == 0, np.nan, by)
 
