@@ -17,7 +17,7 @@ from stribeck.contacts.geometries import LineContact
 from stribeck.files.columns import Column, read_columns
 from stribeck.files.datasets import Column as DataColumn
 from stribeck.files.datasets import units_of
-from stribeck.files.results import Exported, Labelled, ready_for_json
+from stribeck.files.results import Exported, Labelled, json_of
 from stribeck.files.writing import PathLike, path_of
 from stribeck.fits.case_file import case_of
 from stribeck.fits.columns import WORDS
@@ -111,15 +111,15 @@ class LoopFit(WithFittedInputs, Exported, Told, ByValue):
 
     def to_dict(self) -> dict[str, Any]:
         """Return values, intervals, rows and outcome, ready for JSON."""
-        names = ("inputs", "noise", "autocorrelation", "over", "undetermined", "notes")
-        found = {name: getattr(self, name) for name in names} | {
-            "outcome": self.outcome.name,
-            "message": self.outcome.value,
-            "definition": self.stroke.definition,
-            "rows": {name: values for name, (_, values, _, _) in self._rows.items()},
-            "units": units_of(self._rows),
-        }
-        return {name: ready_for_json(value) for name, value in found.items()}
+        return json_of(
+            self,
+            "inputs noise autocorrelation over undetermined notes",
+            outcome=self.outcome.name,
+            message=self.outcome.value,
+            definition=self.stroke.definition,
+            rows={name: values for name, (_, values, _, _) in self._rows.items()},
+            units=units_of(self._rows),
+        )
 
     @property
     def _rows(self) -> dict[str, DataColumn]:

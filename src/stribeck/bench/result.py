@@ -13,7 +13,7 @@ from stribeck._types import Array, Indices
 from stribeck.contacts.geometries import LINE, POINT
 from stribeck.contacts.parts import LAW_NUMBERS
 from stribeck.files.datasets import Column, write_columns
-from stribeck.files.results import UNWRITTEN, WRITTEN, Exported, Labelled
+from stribeck.files.results import UNWRITTEN, WRITTEN, Exported, Labelled, json_of
 from stribeck.files.writing import PathLike
 from stribeck.fits.rig import TEMPERATURE_TOLERANCE
 from stribeck.quantities.docstrings import told
@@ -105,12 +105,10 @@ class BenchCurve(Exported, Told, ByValue):
 
     def to_dict(self) -> dict[str, Any]:
         """Return points, inputs, notes and how columns were read, ready for JSON."""
-        columns = {name: getattr(self, name).tolist() for name in (*POINTS, "error")}
-        of = {"paths": list(self.paths), "curves": list(self.curves), "inputs": list(self.inputs)}
         units = {name: INPUTS[name].unit for each in self.inputs for name in each} | {"error": "1"}
         units |= {name: each.unit for name, each in self._words.items() if name in POINTS and each.unit is not None}
-        told = {"taken": list(self.taken), "notes": list(self.notes), "units": units}
-        return of | {"curve": [self.curves[k] for k in self.curve]} | columns | told
+        names = ("paths", "curves", "inputs", *POINTS, "error", "taken", "notes")
+        return json_of(self, " ".join(names), curve=[self.curves[k] for k in self.curve], units=units)
 
     def _labelled(self) -> Labelled:
         names = np.array(self.curves, dtype=object)

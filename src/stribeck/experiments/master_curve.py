@@ -16,7 +16,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction_rules import RULES
 from stribeck.experiments.common_curve import Agreement, Points, agreement, basis, departure, knots_of, overlapping, power_law
 from stribeck.files.datasets import Column
-from stribeck.files.results import Exported, Labelled, Record
+from stribeck.files.results import Exported, Labelled, Record, json_of
 from stribeck.files.writing import PathLike
 from stribeck.fits.case_file import case_of
 from stribeck.fits.measurements import Data, Measurements, error_of, read_measurements
@@ -172,12 +172,8 @@ class MasterCurve(Exported, Told):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the measures, offsets and powers, ready for JSON."""
-        collapses = [
-            each.to_dict()
-            | {"offsets": [one.to_dict() for one in each.offsets], "powers": [one.to_dict() for one in each.powers]}
-            for each in self.collapses
-        ]
-        return {"collapses": collapses, "has_errors": self.has_errors, "sentence": self.sentence, "notes": list(self.notes)}
+        collapses = [each.to_dict() | {"offsets": each.offsets, "powers": each.powers} for each in self.collapses]
+        return json_of(self, "has_errors sentence notes", collapses=collapses)
 
     def _labelled(self) -> Labelled:
         rows: dict[str, Column] = {"row": ("row", self.data.rows, "1", "row of the file")}

@@ -42,6 +42,12 @@ def ready_for_json(content: Any) -> Any:
     return content
 
 
+def json_of(result: Any, names: str, **others: Any) -> dict[str, Any]:
+    """Return attributes of a result and what else there is to say, ready for JSON."""
+    found = {name: getattr(result, name) for name in names.split()} | others
+    return {name: ready_for_json(content) for name, content in found.items()}
+
+
 class Tabled:
     """A result that is a labelled array."""
 

@@ -14,6 +14,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.files.results import json_of
 from stribeck.files.writing import need_extra
 from stribeck.fits.intervals import information_of
 from stribeck.fits.least_squares import Minimum
@@ -50,11 +51,9 @@ class Posterior(Described):
 
     def to_dict(self) -> dict[str, Any]:
         """Return intervals by input and how well they are known, ready for JSON."""
-        found = {name: getattr(self, name) for name in ("acceptance", "autocorrelation_time", "converged", "message")}
         labels = [each.label for each in self.inputs]
-        for name in ("interval_68", "interval_95"):
-            found[name] = dict(zip(labels, getattr(self, name), strict=True))
-        return found | {"draws": len(self.samples)}
+        ends = {name: dict(zip(labels, getattr(self, name), strict=True)) for name in ("interval_68", "interval_95")}
+        return json_of(self, "acceptance autocorrelation_time converged message", draws=len(self.samples), **ends)
 
 
 def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int], object] | None = None) -> Posterior:

@@ -19,7 +19,7 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.geometries import LINE
 from stribeck.contacts.inputs import InputTable, follows_surface
 from stribeck.files.datasets import Column, listed, units_of
-from stribeck.files.results import Exported, Labelled, Record, columns_of_records, ready_for_json
+from stribeck.files.results import Exported, Labelled, Record, columns_of_records, json_of
 from stribeck.fits.diagnosis import Quality, Unidentifiable, product_text
 from stribeck.fits.free_inputs import FreeInput
 from stribeck.fits.least_squares import Minimum
@@ -241,12 +241,13 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
     def to_dict(self) -> dict[str, Any]:
         """Return values, intervals (None where open), tests, rows and outcome, ready for JSON."""
         names = "converged inputs covariance correlation noise logarithmic robust quality undetermined notes definition"
-        names += " solver_shift model_error evaluations"
-        found = {name: getattr(self, name) for name in names.split()} | {
-            "outcome": self.outcome.name,
-            "message": self.outcome.value,
-            "contact_law": self.law,
-            "held": [
+        return json_of(
+            self,
+            f"{names} solver_shift model_error evaluations",
+            outcome=self.outcome.name,
+            message=self.outcome.value,
+            contact_law=self.law,
+            held=[
                 {
                     "name": name,
                     "unit": DIMENSIONS[self.contact.INPUTS.rows[name].dimension].unit.replace("*", " "),
@@ -254,15 +255,14 @@ class Fit(WithFittedInputs, Exported, Told, ByValue):
                 }
                 for name in self.held
             ],
-            "curves": [
+            curves=[
                 {"name": name}
                 | {key: value for key in (*FREE_INPUTS, "speed") if (value := getattr(contact, key, None)) is not None}
                 for name, contact in zip(self.data.curves, self.contacts, strict=True)
             ],
-            "rows": {name: values for name, (_, values, _, _) in self._rows.items()},
-            "units": units_of_inputs(self.contact) | units_of(self._rows),
-        }
-        return {name: ready_for_json(value) for name, value in found.items()}
+            rows={name: values for name, (_, values, _, _) in self._rows.items()},
+            units=units_of_inputs(self.contact) | units_of(self._rows),
+        )
 
     @property
     def _rows(self) -> dict[str, Column]:

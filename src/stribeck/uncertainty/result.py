@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.inputs import follows_surface
-from stribeck.files.results import Exported, Labelled, Record, columns_of_records
+from stribeck.files.results import Exported, Labelled, Record, columns_of_records, json_of
 from stribeck.quantities.formats import format_percent, format_share, format_si
 from stribeck.quantities.results import Card, Told
 from stribeck.quantities.standard_errors import StandardErrors
@@ -108,16 +108,8 @@ class Uncertainty(Exported, Told):
 
     def to_dict(self) -> dict[str, Any]:
         """Return spreads, probabilities and contributions in SI units, ready for JSON."""
-        return {
-            "errors": self.errors,
-            "correlations": self.errors.nested,
-            "spreads": [each.to_dict() for each in self.spreads],
-            "regime_probabilities": self.regimes,
-            "contributions": self.contributions,
-            "method": self.method,
-            "definition": self.definition,
-            "notes": list(self.notes),
-        }
+        names = "errors spreads contributions method definition notes"
+        return json_of(self, names, correlations=self.errors.nested, regime_probabilities=self.regimes)
 
     def to_si(self) -> dict[str, float]:
         """Return the values for the inputs as given in SI units, by the name of each quantity."""
