@@ -267,7 +267,7 @@ class _LoopModel:
         self.rubs = np.array([each.name == contact.friction_of_asperities.size for each in free])
         self.strokes = 0
         self.is_mirrored = False  # Whether positions fall where friction is above zero
-        self._known: dict[bytes, tuple[Array, Array, Array, Array]] = {}
+        self._known: dict[bytes, Array] = {}
         self.phase, sliding = self._phases(loop)
         self.left_out = int((~sliding).sum())
         self.data = replace(loop, values=loop.values[sliding], friction=loop.friction[sliding])
@@ -301,17 +301,15 @@ class _LoopModel:
 
     def at(self, theta: Array, steps: int | None = None) -> Stroke:
         """Return the stroke at a set of free inputs."""
-        values = {name: getattr(self.contact, name) for free in self.free for name in free.names}
-        moved = {
-            name: values[name] * math.exp(t) for free, t in zip(self.free, theta.tolist(), strict=True) for name in free.names
-        }
+        factors = {name: math.exp(t) for free, t in zip(self.free, theta.tolist(), strict=True) for name in free.names}
+        moved = {name: getattr(self.contact, name) * factor for name, factor in factors.items()}
         found = stroke(self.contact.replace(**moved), **self.arguments | {"steps": steps or self.steps})
         self.strokes += 1
         if self.on_step is not None:
             self.on_step(self.strokes)
         return found
 
-    def _parts(self, theta: Array) -> tuple[Array, Array, Array, Array]:
+    def _parts(self, theta: Array) -> Array:
         """Return friction by asperities and by the fluid at the rows, as asperities of the case rub, and errors."""
         # Friction by asperities goes with its size, and nothing else of the stroke does.
         others = np.where(self.rubs, 0.0, theta)
@@ -320,12 +318,10 @@ class _LoopModel:
             self._known[key] = self.at_rows(self.at(others))
         return self._known[key]
 
-    def at_rows(self, found: Stroke) -> tuple[Array, Array, Array, Array]:
-        """Return both parts of friction and their errors at the rows."""
+    def at_rows(self, found: Stroke) -> Array:
+        """Return both parts of friction and their errors at the rows, shape (4, n)."""
         errors = found.errors["friction_asperities"], found.errors["friction_fluid"]
-        parts = (found.friction_asperities, found.friction_fluid, *errors)
-        by_asperities, by_fluid, *of_parts = (self.along(found, each) for each in parts)
-        return by_asperities, by_fluid, of_parts[0], of_parts[1]
+        return np.array([self.along(found, each) for each in (found.friction_asperities, found.friction_fluid, *errors)])
 
     def along(self, found: Stroke, values: Array) -> Array:
         """Return what a stroke has at its instants at the rows."""

@@ -21,7 +21,7 @@ from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.scaled import NAMED_LAWS
 from stribeck.contacts.contact import Contact
-from stribeck.files.results import Exported, Labelled, Record, columns_of_records
+from stribeck.files.results import Exported, Labelled, Record, columns_of_records, json_of
 from stribeck.files.toml import toml_text
 from stribeck.files.writing import PathLike
 from stribeck.fits.case_file import case_of, write_fitted_case
@@ -99,7 +99,7 @@ class Comparison(Exported, Told):
         laws = [each.to_dict() | {"values": each.fit.to_si()} for each in self.candidates]
         units = {one.label: one.unit or "1" for each in self.candidates for one in each.fit.inputs}
         units |= {name: unit for name, (unit, _) in Candidate._labels.items()}
-        return {"laws": laws, "failed": self.failed, "sentence": self.sentence, "caveats": list(CAVEATS), "units": units}
+        return json_of(self, "failed sentence", laws=laws, caveats=CAVEATS, units=units)
 
     def _labelled(self) -> Labelled:
         columns = columns_of_records("law", self.candidates, Candidate._labels)

@@ -22,7 +22,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction_rules import RULES
 from stribeck.curves.sensitivities import atlas_sensitivities, friction_sensitivities
 from stribeck.files.datasets import Column
-from stribeck.files.results import Exported, Labelled, Record, columns_of_records
+from stribeck.files.results import Exported, Labelled, Record, columns_of_records, json_of
 from stribeck.fits.intervals import information_of
 from stribeck.fits.result import Fit
 from stribeck.numerics.threads import one_blas_thread
@@ -91,12 +91,9 @@ class Plan(Exported, Told):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the runs and the errors before and after them, ready for JSON."""
-        return {
-            "runs": [each.to_dict() | {"errors": each.errors} for each in self.runs],
-            "errors_before": self.before,
-            "noise": self.noise,
-            "units": {name: unit or self.runs[0].unit for name, (unit, _) in NextRun._labels.items()},
-        }
+        runs = [each.to_dict() | {"errors": each.errors} for each in self.runs]
+        units = {name: unit or self.runs[0].unit for name, (unit, _) in NextRun._labels.items()}
+        return json_of(self, "noise", runs=runs, errors_before=self.before, units=units)
 
     def _labelled(self) -> Labelled:
         columns = columns_of_records("run", self.runs, NextRun._labels)
