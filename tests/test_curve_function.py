@@ -96,7 +96,7 @@ def test_a_curve_is_sampled_anew_without_a_state(curve):
     assert finer.values[[0, -1]] == pytest.approx(curve.values[[0, -1]], rel=1e-12)
     there = curve.at(finer.values[1:-1])
     assert (np.abs(finer.friction[1:-1] - there.friction) <= there.friction.error).all()
-    with pytest.raises(sb.InputError, match="at least 2"):
+    with pytest.raises(sb.InputError, match="a whole number from 2"):
         curve.sampled(1)
 
 

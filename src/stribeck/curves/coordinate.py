@@ -179,11 +179,3 @@ def check_inside(coordinate: Coordinate, values: Array) -> None:
     for value in (values[0], values[-1]):
         if coordinate.groups_at(math.log(value)).is_hertzian:
             raise InputError("speed and roughness are both zero; the dry smooth contact has no curve; use solve.")
-
-
-def check_points(points: int) -> None:
-    """Refuse a number of points that is none or out of range."""
-    low, high = POINTS_RANGE
-    if isinstance(points, bool) or not isinstance(points, int) or not low <= points <= high:
-        allowed = f"a whole number from {low} to {high}: a curve has at least {low}"
-        raise InputError(f"points = {show(points)}; it must be {allowed}.")

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal
 
 from stribeck._types import Array
 from stribeck.contacts.friction import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime
@@ -39,8 +39,6 @@ class Landmark(Record):
 
 Method = Literal["solver", "atlas"]  # Where states come from: solved, or read off :mod:`stribeck.atlas`
 
-METHODS: tuple[Method, ...] = get_args(Method)
-
 
 class Transition(StrEnum):
     """The named places of a curve; the values are their names in outputs."""
@@ -65,13 +63,6 @@ def check_transition(name: str) -> Transition:
     except ValueError:
         known = ", ".join(repr(one.name.lower()) for one in Transition)
         raise InputError(f"name = {show(name)}; a curve is asked for one of {known}.") from None
-
-
-def check_method(method: str) -> Method:
-    """Return ``method`` if it is one of the two."""
-    if isinstance(method, str) and method in METHODS:
-        return method
-    raise InputError(f"method = {show(method)}; it must be {' or '.join(map(repr, METHODS))}.")
 
 
 def ranges_of(

@@ -19,7 +19,7 @@ from stribeck.contacts.contact import Contact, model_words
 from stribeck.contacts.friction import REGIMES, Definition, FrictionArray, Regime, friction_share, regime_numbers
 from stribeck.contacts.groups import BASE_MODEL, Groups
 from stribeck.contacts.notes import HARD_PREFIX, law_notes, minimum_note
-from stribeck.curves.coordinate import Over, check_points, given_values
+from stribeck.curves.coordinate import POINTS_RANGE, Over, given_values
 from stribeck.curves.friction_path import FrictionPath
 from stribeck.curves.regime import Landmark, Method, Transition, check_transition, ranges_of
 from stribeck.curves.simulator_model import StribeckModel, simulator_model
@@ -30,7 +30,7 @@ from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import OUTPUT_TABLES
 from stribeck.quantities.results import ByValue, Card, Shown
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, checked_count, show
 from stribeck.solver.numbers import si_films
 
 
@@ -253,7 +253,7 @@ class StribeckCurve(Exported, Shown, ByValue):
         InputError
             For a number that is none.
         """
-        check_points(points)
+        checked_count("points", points, *POINTS_RANGE)
         return replace(self, values=np.geomspace(self.values[0], self.values[-1], points), requested=points)
 
     @cached_property

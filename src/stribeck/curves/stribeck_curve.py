@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, NoReturn
+from typing import Any, NoReturn, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,10 +17,10 @@ from stribeck.contacts.groups import Groups
 from stribeck.contacts.with_parts import known_speeds, refuse_fixed_memory, with_parts
 from stribeck.curves.atlas_source import AtlasSource
 from stribeck.curves.ball_source import ball_source
-from stribeck.curves.coordinate import Coordinate, Over, check_inside, check_points, read_problem
+from stribeck.curves.coordinate import POINTS_RANGE, Coordinate, Over, check_inside, read_problem
 from stribeck.curves.friction_path import FrictionPath
 from stribeck.curves.line_source import LineSource
-from stribeck.curves.regime import Method, check_method
+from stribeck.curves.regime import Method
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.source import Coefficients, Progress
 from stribeck.curves.speed_range import SPEEDS, automatic_speed_range, fastest, grown, no_range, part_of_contact
@@ -29,7 +29,7 @@ from stribeck.numerics.continuation import follow
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, checked_count, checked_word
 from stribeck.solver.path.line_knots import LineKnots
 from stribeck.solver.path.line_path import LineProblem, line_problem
 from stribeck.solver.refinement import RefinedState
@@ -114,12 +114,12 @@ def stribeck_curve(
     if isinstance(base, Groups) and over == "speed":
         refuse_fixed_memory(base, "and groups hold it fixed; give a contact, or vary load or roughness.")
     boundary_friction, beta = coefficients(contact, boundary_friction, beta)
-    check_points(points)
+    checked_count("points", points, *POINTS_RANGE)
     given_friction: Coefficients = boundary_friction, beta, definition
     # Curves end where asperities no longer matter, which their friction at small area tells.
     at_small_area: Coefficients = as_asperity_friction(boundary_friction).coefficient_at_small_area(contact), beta, definition
     coordinate = Coordinate(over, base)
-    is_solved, is_line = check_method(method) == "solver", coordinate.geometry == "line"
+    is_solved, is_line = checked_word("method", method, get_args(Method)) == "solver", coordinate.geometry == "line"
     known = (0.0, math.inf) if contact is None else known_speeds(contact)
     if not is_solved:
         if needs_area(boundary_friction):

@@ -28,7 +28,7 @@ from stribeck.fits.result import Fit
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.formats import format_percent, format_si
 from stribeck.quantities.results import Card, Told
-from stribeck.quantities.units import InputError, checked_callback, checked_kind, show
+from stribeck.quantities.units import InputError, checked_callback, checked_count, checked_kind, show
 from stribeck.solver.solve_error import SolveError
 
 CANDIDATE_SPEEDS = 17  # Speeds from the slowest measured to the fastest, and a factor of SPEED_MARGIN to both sides
@@ -152,8 +152,7 @@ def next_runs(
     checked_callback("on_step", on_step)
     if not fit.converged:
         raise InputError(f"the fit did not converge, so that no run can be advised. {fit.outcome.value}")
-    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MAX_RUNS:
-        raise InputError(f"count = {show(count)}; it must be a whole number from 1 to {MAX_RUNS}.")
+    checked_count("count", count, 1, MAX_RUNS)
     prices = DEFAULT_COST | dict(cost or {})
     if set(prices) != set(DEFAULT_COST) or min(prices.values()) < 0 or prices["point"] <= 0:
         raise InputError(f"cost = {show(cost)}; it may hold {', '.join(DEFAULT_COST)}, each zero or positive, point positive.")

@@ -22,7 +22,7 @@ from stribeck.fits.result import Fit, FittedInput, format_value
 from stribeck.quantities.docstrings import Described
 from stribeck.quantities.formats import format_percent
 from stribeck.quantities.results import table_lines
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, checked_count
 
 SEED = 20_261_121
 MIN_TIMES = 50  # Autocorrelation times after which emcee's documentation calls a chain long enough
@@ -101,8 +101,7 @@ def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int],
 def check_posterior(steps: int, robust: bool) -> None:
     """Refuse a posterior that cannot be drawn whatever the fit gives."""
     need_extra("a posterior", "fit", "emcee")
-    if isinstance(steps, bool) or not isinstance(steps, int) or steps < 100:
-        raise InputError(f"steps = {steps!r}; a chain has at least 100.")
+    checked_count("steps", steps, 100)
     if robust:
         raise InputError("no posterior is drawn. A robust loss is not a likelihood.")
 

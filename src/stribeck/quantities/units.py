@@ -157,6 +157,14 @@ def checked_word(name: str, value: Any, words: Iterable[str], about: str = "") -
     raise InputError(f"{name} = {show(value)} must be {allowed}{about}.")
 
 
+def checked_count(name: str, value: Any, low: int, high: int | None = None) -> int:
+    """Return a whole number in a range, or refuse anything else."""
+    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= (value if high is None else high):
+        end = "on" if high is None else f"to {high}"
+        raise InputError(f"{name} = {show(value)}; it must be a whole number from {low} {end}.")
+    return value
+
+
 def checked_callback(name: str, value: Any) -> Any:
     """Return a function to be called during the work, or None; refuse anything else before the work begins."""
     if value is not None and not callable(value):

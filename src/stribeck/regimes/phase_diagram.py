@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import cache, partial
 from itertools import pairwise, product
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
@@ -20,14 +20,14 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, coefficients, friction_share, regime_numbers
 from stribeck.contacts.groups import Groups
 from stribeck.curves.friction_path import FrictionPath
-from stribeck.curves.regime import Landmark, Method, check_method
+from stribeck.curves.regime import Landmark, Method
 from stribeck.curves.result import StribeckCurve, path_of
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.events import first_zero, least_by_slope, zero_of_growing
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, checked_word
 from stribeck.regimes.phase_grid import MARKS, Diagram, diagram_dataset, empty_diagram
 from stribeck.solver.solve import as_groups, check_rtol, solve
 from stribeck.solver.solve_error import SolveError, describe
@@ -198,6 +198,7 @@ def phase_diagram(
     from stribeck.files.datasets import import_xarray
 
     import_xarray()
+    checked_word("method", method, get_args(Method))
     total = diagram.table["regime"].size
     columns = len(diagram.axes["speed"])
     rows = list(product(range(len(diagram.axes["load"])), range(len(diagram.axes["roughness"]))))
@@ -208,7 +209,7 @@ def phase_diagram(
                 if on_point is not None:
                     on_point(number * columns + int(part * columns), total)
 
-            _fill_row(diagram, (i, j), check_method(method), report)
+            _fill_row(diagram, (i, j), method, report)
         if merging:
             diagram.merging = np.full(len(diagram.axes["load"]), np.nan)
             given = diagram.boundary_friction, diagram.beta, diagram.definition

@@ -24,7 +24,7 @@ from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import COLUMNS, GROUPS, LINE
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, checked_count, show
 from stribeck.solver.numbers import input_attributes
 from stribeck.solver.solve import as_groups, with_law
 
@@ -178,8 +178,7 @@ def _points(points: int | Mapping[str, int] | None, kind: Kind) -> dict[str, int
     if unknown:
         raise InputError(f"points has the unknown name {show(unknown[0])}; it may have load, roughness and speed.")
     for name, count in wanted.items():
-        if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= MOST_POINTS:
-            raise InputError(f"points of {name} = {show(count)}; they must be a whole number from 2 to {MOST_POINTS}.")
+        checked_count(f"points of {name}", count, 2, MOST_POINTS)
     return {**kind.points, **wanted}
 
 

@@ -22,7 +22,7 @@ from stribeck.numerics.settings import COARSE_ORDER, COARSE_RTOL, LEAST_DEGREE, 
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.units import InputError, checked_callback, checked_word, show
+from stribeck.quantities.units import InputError, checked_callback, checked_count, checked_word, show
 from stribeck.solids.solid import lengths_of
 from stribeck.solver.solve import solved_point
 from stribeck.solver.solve_error import SolveError, describe
@@ -211,8 +211,7 @@ def _checked_cycles(motion: Motion, cycles: int | None) -> int:
     """Return how often a motion is done."""
     if cycles is None:
         return 2 if motion.repeats else 1
-    if isinstance(cycles, bool) or not isinstance(cycles, int) or cycles < 1:
-        raise InputError(f"cycles = {show(cycles)}; it must be a whole number from 1 on.")
+    checked_count("cycles", cycles, 1)
     if cycles > 1 and not motion.repeats:
         raise InputError(f"cycles = {cycles}: a {type(motion).__name__} does not end as it begins; leave cycles out.")
     return cycles

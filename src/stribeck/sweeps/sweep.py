@@ -23,7 +23,7 @@ from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import COLUMNS
 from stribeck.quantities.results import ByValue, Card, Told
-from stribeck.quantities.units import InputError, checked_callback, show
+from stribeck.quantities.units import InputError, checked_callback, checked_count, show
 from stribeck.sweeps.design import SweepDesign, load_sweep
 from stribeck.sweeps.store import ERROR, PENDING, claimed_store, read_store, row_of
 
@@ -243,8 +243,7 @@ def sweep(
     The numbers do not depend on the number of workers.  With ``workers`` above 1 a script needs the usual
     ``if __name__ == "__main__":``, because its processes import it.
     """
-    if isinstance(workers, bool) or not isinstance(workers, int) or not 1 <= workers <= MAX_WORKERS:
-        raise InputError(f"workers = {show(workers)}; it must be a whole number from 1 to {MAX_WORKERS}.")
+    checked_count("workers", workers, 1, MAX_WORKERS)
     if scheduler is not None and workers != 1:
         raise InputError(
             f"workers = {workers} and scheduler = {show(scheduler)} are both given; a cluster has its own workers."

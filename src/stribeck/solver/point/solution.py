@@ -27,7 +27,7 @@ from stribeck.fluids.fluid import Cavitation
 from stribeck.numerics.settings import MAX_BYTES
 from stribeck.quantities.lazy import cached_property
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.units import InputError, real_array, show
+from stribeck.quantities.units import InputError, checked_count, real_array, show
 from stribeck.solver.at_rest import effective_model
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.fields import Field, Profile
@@ -274,8 +274,7 @@ class PointSolution(BaseSolution):
         InputError
             If an argument is outside its range.
         """
-        if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= MAX_POINTS:
-            raise InputError(f"points = {show(points)}; it must be a whole number from 2 to {MAX_POINTS}.")
+        checked_count("points", points, 2, MAX_POINTS)
         if isinstance(reach, bool) or not isinstance(reach, int | float) or not (reach > 0 and math.isfinite(reach)):
             raise InputError(f"reach = {show(reach)}; it must be a positive number of Hertz radii.")
         found, scale = (self.field, 1.0) if self.contact is None else (self.to_si, self.contact.hertz.half_width)
