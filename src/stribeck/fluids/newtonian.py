@@ -227,4 +227,7 @@ def blend(film: Film, part: float) -> Film:
     """Return the film at a place of the path from the Newtonian one, 0, to its own, 1."""
     if part == 1.0:
         return film
-    return cast(Film, Blend(film, (1 - part) * (math.exp(-NEWTONIAN_DECAY * part) if hasattr(film, "decay") else 1.0)))
+    if not hasattr(film, "thinning_later"):
+        return cast(Film, Blend(film, 1 - part))
+    # The flow of a fluid that thins may grow exponentially with the gradient: no small part of it is small.
+    return cast(Film, Blend(film.thinning_later(part), (1 - part) * math.exp(-NEWTONIAN_DECAY * part)))

@@ -13,14 +13,23 @@ the fluid for the flow along the film too, so that the film depends on s.
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.fluids.fluid import MAX_CACHED_SHAPES, Decay
-from stribeck.fluids.laws import DensityLaw, Profile, RateLaw, ViscosityLaw, joined_names, joined_parameters, notes_of
+from stribeck.fluids.laws import (
+    DensityLaw,
+    FilmUnits,
+    Profile,
+    RateLaw,
+    ViscosityLaw,
+    joined_names,
+    joined_parameters,
+    notes_of,
+)
 from stribeck.fluids.local_flow import profile
 from stribeck.fluids.newtonian import Column, Newtonian
 from stribeck.fluids.rheology.viscosity import Constant, Incompressible
@@ -74,6 +83,10 @@ class ShearThinning(Column):
     def at_low_rates(self) -> Newtonian:
         """The film without shear thinning: its G vanishes at the same gap."""
         return Newtonian(self.viscosity, self.density, slide=self.slide, entrained=self.entrained)
+
+    def thinning_later(self, part: float) -> Self:
+        """Return the film of a fluid whose relaxation time is a part of this one's."""
+        return replace(self, law=self.law.scaled(FilmUnits(1.0, 1.0 / part, 1.0, 1.0)))
 
     def decay(self, speed: float) -> Decay:
         """Return how the pressure falls off far away: there the rate is about 1/h, and h about x**2/2."""
