@@ -154,7 +154,8 @@ def judged(family: str, number: int, seed: int, rtol: float, largest: float = ma
         exact = better_values(state, finer)
     except ArithmeticError as problem:
         return row | {"problem": str(problem)}
-    ratios = {name: abs(state.values[name] - exact[name]) / error for name, error in state.absolute_errors.items()}
+    off = {name: abs(state.values[name] - exact[name]) for name in state.absolute_errors}
+    ratios = {name: off[name] / error if off[name] else 0.0 for name, error in state.absolute_errors.items()}
     return row | {"ratios": ratios, "relative": {name: state.errors[name] for name in ratios}}
 
 

@@ -50,7 +50,8 @@ def test_random_cold_starts_of_films_that_end_are_solved_and_their_errors_covere
         for name, error in coarse.errors.items():
             value, exact = getattr(coarse, name), getattr(fine, name)
             least = 1.0 if "share" in name or name == "exit_position" else 1e-3 if name == "offset" else 0.0
-            ratios.append(abs(value - exact) / max(least, abs(exact)) / (error + fine.errors[name]))
+            if value != exact:  # the share of smooth surfaces is zero, without an error
+                ratios.append(abs(value - exact) / max(least, abs(exact)) / (error + fine.errors[name]))
         missed += np.nanmax(ratios) > 1
         assert np.nanmax(ratios) < 30, groups
     assert missed <= 0.05 * states
