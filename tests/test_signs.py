@@ -63,7 +63,7 @@ def test_a_drop_has_one_friction_however_one_asks():
 
 def test_friction_of_the_atlas_is_positive_and_grows_with_the_drop(subtests):
     for speed in [1e-3, 100.0]:
-        for radii in [1.1, 1.5, 2.0, 4.9, 5.0, 6.0, 12.0, 30.0]:
+        for radii in [5.0, 6.0, 12.0, 30.0]:
             with subtests.test(speed=speed, radii=radii):
                 groups = sb.Groups(speed, 0.1, 1e-3, geometry="point")
                 smaller, larger = (sb.atlas.viscous_friction(groups, 0.1, wetted_radius=each * radii) for each in (1.0, 1.1))
