@@ -148,3 +148,11 @@ def test_a_film_that_ends_does_so_unless_it_is_asked_to_be_full(capsys, write):
     known = [json.loads(call(capsys, "stroke", ends, "--json", *words).out) for words in ([], ["--cavitation", "none"])]
     assert ["The film ends" in each["notes"][0] for each in known] == [True, False]
     assert known[0]["friction"][-1] < known[1]["friction"][-1]
+
+
+def test_friction_at_the_largest_speed_is_that_of_the_end_of_a_plateau(capsys, write):
+    # At its first instant the film lags behind the speed.
+    times, speeds = '["0 s", "0.2 s", "2 s", "2.2 s"]', '["0.5 mm/s", "5 mm/s", "5 mm/s", "2 mm/s"]'
+    motion = {"motion": '"table"', "time": times, "velocity": speeds, "steps": "24"}
+    found = json.loads(call(capsys, "stroke", write(motion), "--json").out)
+    assert found["friction_at_largest_speed"] == pytest.approx(found["steady_friction"], rel=0.02)

@@ -14,7 +14,7 @@ from stribeck.contacts.friction import Definition
 from stribeck.files.datasets import Column
 from stribeck.files.results import Exported, Labelled
 from stribeck.motions.motion import Motion
-from stribeck.numerics.settings import COARSE_RTOL, NEGLIGIBLE
+from stribeck.numerics.settings import COARSE_RTOL, HALF_DIGITS, NEGLIGIBLE
 from stribeck.quantities.formats import format_error, format_si
 from stribeck.quantities.results import ByValue, Card, Told
 
@@ -134,7 +134,7 @@ SLOWEST = NEGLIGIBLE**2  # Speed over the largest from which on steady friction 
 def beside_steady(stroke: Stroke, on_point: Callable[[int, int], None] | None = None) -> dict[str, float]:
     """Return friction on the way out of the last cycle, beside steady sliding at the same speeds, and each error.
 
-    It is friction at the largest speed [m/s], and its mean over the path.
+    It is friction at the largest speed [m/s], at the last instant that has it, and its mean over the path.
     """
     from stribeck.curves.stribeck_curve import stribeck_curve  # slow to import, and a stroke by itself needs none
 
@@ -143,8 +143,8 @@ def beside_steady(stroke: Stroke, on_point: Callable[[int, int], None] | None = 
     time, speed, friction, doubt = (
         each[last] for each in (stroke.time, stroke.speed, stroke.friction, stroke.errors["friction"])
     )
-    top = int(np.argmax(speed))
-    largest = float(speed[top])
+    largest = float(speed.max())
+    top = int(np.flatnonzero(np.isclose(speed, largest, rtol=HALF_DIGITS, atol=0.0))[-1])  # of a plateau its end
     contact, asperities = stroke.contact, stroke.contact.friction_of_asperities
     known = asperities.known_speeds
     slowest = max(SLOWEST * largest, known[0])
