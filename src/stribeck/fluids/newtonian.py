@@ -227,7 +227,7 @@ def blend(film: Film, part: float) -> Film:
     """Return the film at a place of the path from the Newtonian one, 0, to its own, 1."""
     if part == 1.0:
         return film
-    if not hasattr(film, "thinning_later"):
+    if not hasattr(film, "with_shorter_time"):
         return cast(Film, Blend(film, 1 - part))
     # The flow of a fluid that thins may grow exponentially with the gradient: no small part of it is small.
-    return cast(Film, Blend(film.thinning_later(part), (1 - part) * math.exp(-NEWTONIAN_DECAY * part)))
+    return cast(Film, Blend(film.with_shorter_time(part), (1 - part) * math.exp(-NEWTONIAN_DECAY * part)))

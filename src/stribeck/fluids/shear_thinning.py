@@ -84,7 +84,7 @@ class ShearThinning(Column):
         """The film without shear thinning: its G vanishes at the same gap."""
         return Newtonian(self.viscosity, self.density, slide=self.slide, entrained=self.entrained)
 
-    def thinning_later(self, part: float) -> Self:
+    def with_shorter_time(self, part: float) -> Self:
         """Return the film of a fluid whose relaxation time is a part of this one's."""
         return replace(self, law=self.law.scaled(FilmUnits(1.0, 1.0 / part, 1.0, 1.0)))
 

@@ -199,9 +199,9 @@ def iterate_cavitated(
             krylov += solved.steps
             if not np.isfinite(solved.x).all():
                 return ended(Outcome.SINGULAR)
-            wider = kept.banded.wider_band
-            if solved.left > NEGLIGIBLE and not (is_new and wider is None):
-                band, kept = wider if is_new and wider is not None else band, None
+            wider = kept.banded.wider_band if is_new else band
+            if solved.left > NEGLIGIBLE and wider is not None:
+                band, kept = wider, None
                 continue
             step = linear.changes(solved.x, residual[0])
             part = longest_step(law, y.gap, step.gap)

@@ -82,11 +82,10 @@ def iterate(
             solved = _solved(linear, preconditioner, right, residual[0], linear_rtol(size, tolerance))
             krylov += solved.steps
             if not solved.accepted:
-                if is_new:
-                    if preconditioner.wider_band is None:
-                        return ended(Outcome.SINGULAR)
-                    band = preconditioner.wider_band
-                preconditioner = None
+                wider = preconditioner.wider_band if is_new else band
+                if wider is None:
+                    return ended(Outcome.SINGULAR)
+                band, preconditioner = wider, None
                 continue
             step = solved.step
             part = longest_step(law, y.gap, step.gap)
