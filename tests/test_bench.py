@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from command_line import call, case_text
 from scipy.signal import lfilter
-from scipy.stats import binom, chi2
+from scipy.stats import binom, chi2, t
 
 import stribeck as sb
 
@@ -138,6 +138,29 @@ def test_a_torque_a_rotation_and_a_load_that_is_off_make_the_same_curve(written)
     settings = sb.FitSettings(track_radius=0.02, arm=0.02)
     other = sb.bench.read(written(text_of(turning, "Time [s];Speed [rpm];Fz [N];Torque [mN m]")), settings)
     assert other.speed == pytest.approx(one.speed, rel=1e-4) and other.friction == pytest.approx(one.friction, rel=1e-3)
+
+
+def test_a_rotation_beside_forces_and_a_friction_coefficient_is_a_speed(written):
+    rows = stepped(np.random.default_rng(3), speeds=SPEEDS[::2], n=40)
+    turning = np.column_stack([rows * [1, 60 / (2 * np.pi * 20), 1, 1], np.abs(rows[:, 3] / rows[:, 2])])
+    path = written(text_of(turning, "T [s];Rotary Speed [rpm];Fz [N];Fx [N];COF"))
+    assert "'Rotary Speed [rpm]' is a rotation; the radius of its track" in refusal(path)
+    found = sb.bench.read(path, track_radius="20 mm")
+    assert found.speed == pytest.approx(sb.bench.read(written(text_of(rows))).speed, rel=1e-4)
+    assert "'Fx [N]' / 'Fz [N]'" in found.taken[0]
+
+
+def test_the_scatter_of_single_means_is_their_error(written):
+    """Three runs of one mean for each speed; with 16 degrees of freedom the 95 % interval is that of Student."""
+    runs = 1 + 0.02 * np.random.default_rng(5).normal(size=(3, len(SPEEDS)))
+    texts = [
+        "\n".join(["speed [mm/s];COF", *(f"{u};{each:.6f}" for u, each in zip(SPEEDS, run, strict=True))]) for run in runs
+    ]
+    scatter = np.sqrt(np.sum((runs - runs.mean(axis=0)) ** 2) / 16 / 3)
+    several = [written(text, f"{i}.csv") for i, text in enumerate(texts)]
+    for found in (sb.bench.read(several), sb.bench.read(written("\n".join(texts)))):
+        assert found.half_width / found.friction == pytest.approx(np.full(len(SPEEDS), t.ppf(0.975, 16) * scatter), rel=0.02)
+        assert not note_of(found, "Nothing shows") and not note_of(found, "no error can be made")
 
 
 def test_a_column_of_the_load_may_be_empty(written):

@@ -436,6 +436,7 @@ def test_advice_is_true_or_absent(written):
     force = refusal(written("Fx (N);Fz (N);V2 [mm/s]\n0.5;1;1\n0.4;1;2\n0.3;1;3\n"))
     assert force.endswith("as in speed = 'V2 [mm/s]'.")
     assert "as in" not in refusal(written("a;b;c\n1;2;3\n4;5;7\n"))
+    assert "as in" not in refusal(written("speed_mms;load_kg\n1;2\n4;5\n"))
     ragged = refusal(written("speed [mm/s],COF\n0.1,0.5\n0.3,0.4,0.3\n"))
     assert "row 3 has 3 cells where the header has 2" in ragged and "decimal" not in ragged
     assert "begin decimals" in refusal(written("speed [mm/s],COF\n0,1,0,5\n0,3,0,4\n"))

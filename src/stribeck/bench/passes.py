@@ -244,11 +244,8 @@ def _of_ramps(parts: Sequence[Part], raw: Raw, speed: Array, friction: Array, pe
     count = max(1, round(per_decade * decades))
     if len(moving) < FEWEST * count:  # each row is a mean that the rig made
         single = [pass_ for i in moving for pass_ in _passes([(np.array([i]), int(np.sign(speed[i])))], raw, friction)]
-        return (
-            single,
-            "Each row is a point, as there are fewer than three for each speed: "
-            + ("no error can be made of single rows." if raw.stated is None else "its error is that which the file gives."),
-        )
+        stated = "" if raw.stated is None else ": its error is that which the file gives"
+        return single, f"Each row is a point, as there are fewer than three for each bin of the speed{stated}."
     bins = np.minimum(((y - y.min()) / max(float(np.ptp(y)), 1e-300) * count).astype(int), count - 1)
     of_row = np.full(len(speed), -1)
     of_row[moving] = bins

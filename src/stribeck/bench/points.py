@@ -10,7 +10,7 @@ from stribeck._types import Array, Flags, Indices
 from stribeck.bench.passes import Pass
 from stribeck.bench.raw import Raw
 from stribeck.fits.repeats import CLEAR, FEWEST, SAME_SPEED, Row, at_same_speed, counted, run_in
-from stribeck.quantities.formats import format_error, format_si
+from stribeck.quantities.formats import format_error, format_percent, format_si
 
 UNLIKELY = 0.05  # Probability below which passes differ by more than the noise within them
 
@@ -56,7 +56,8 @@ def points_of(passes: Sequence[Pass], raw: Sequence[Raw], paths: Sequence[str]) 
     means = np.array([each.mean for each in passes])
     errors = np.array([each.error for each in passes])
     usable = errors > 0
-    errors = np.where(usable, errors, np.median(errors[usable]) if usable.any() else 1.0)
+    single = not usable.any()  # means of the rig, whose noise is proportional to friction and shows in their scatter alone
+    errors = np.where(usable, errors, np.where(means, np.abs(means), 1.0) if single else np.median(errors[usable]))
     base = np.equal.outer(level, np.arange(level.max() + 1)).astype(float)
     said, extra = _force_zeros(raw, passes, level, base, means, errors, paths)
     design = np.hstack([base, extra])
@@ -73,14 +74,17 @@ def points_of(passes: Sequence[Pass], raw: Sequence[Raw], paths: Sequence[str]) 
         scale = math.sqrt(float(residuals[mine] @ residuals[mine]) / freedom) if freedom >= FEWEST - 1 else 0.0
         own = [each for each, one in zip(passes, mine, strict=True) if one]
         within = sum(each.independent - 1 for each in own) if any(np.ptp(each.values) for each in own) else math.inf
-        apart = scale > 1 and bool(f.sf(scale**2, freedom, min(max(within, 1.0), 1e6)) < UNLIKELY)
+        unlikely = scale > 1 and bool(f.sf(scale**2, freedom, min(max(within, 1.0), 1e6)) < UNLIKELY)
+        apart = scale > 0 if single else unlikely
         factor, quantile = (scale if apart else 1.0), float(t.ppf(0.975, max(freedom if apart else within, 1.0)))
         widened += [scale] * apart
         for k in levels:
             of = [each for each, at in zip(passes, level, strict=True) if at == k]
-            error = math.sqrt(float(covariance[k, k])) * factor if usable[level == k].any() else math.nan
+            error = math.sqrt(float(covariance[k, k])) * factor if apart or usable[level == k].any() else math.nan
             points.append(_point(curve, of, raw, float(friction[k]), quantile * error))
-    if widened:
+    if widened and single:
+        said.append(f"Single means have no error: it is by their scatter at the same speed, {format_percent(max(widened))}.")
+    elif widened:
         advice = " Files of different fluids need names: --name '{fluid}' (in Python name=)." if len(paths) > 1 else ""
         said.append(
             f"Passes at the same speed differ by {max(widened):.2g} times what the noise within them allows, and errors are "

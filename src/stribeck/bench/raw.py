@@ -15,7 +15,7 @@ from stribeck.files.cells import has_number, is_missing, is_named, rows_left_out
 from stribeck.files.columns import has_dimension, si_factor
 from stribeck.files.table_reading import read_table
 from stribeck.files.text_table import TextTable
-from stribeck.fits.columns import abscissa_of, columns_of, curve_labels, has_column, known_name, with_errors_named
+from stribeck.fits.columns import abscissa_of, candidates, columns_of, curve_labels, has_column, known_name, with_errors_named
 from stribeck.fits.repeats import FEWEST, errors_of_means
 from stribeck.fits.rig import PATTERNS, column_of, levels_of, measured, prepared, temperatures
 from stribeck.fits.stated import inputs_said
@@ -175,8 +175,7 @@ def _uses_coefficient(table: TextTable, settings: FitSettings) -> bool:
     force, load = measured(table, "friction_force", settings), measured(table, "normal_force", settings)
     if "friction" in settings.columns or force is None or load is None:
         return True
-    columns = columns_of(table, settings)
-    given = numbers(table, columns["friction"][0], "friction", settings)
+    given = numbers(table, candidates(table, settings, "friction")[0], "friction", settings)
     with np.errstate(divide="ignore", invalid="ignore"):
         found = np.abs(force / load)
         apart = np.abs(found / np.abs(given) - 1)

@@ -75,7 +75,8 @@ _LOGARITHM = re.compile(
     r"(?<![a-z])(?:(?:log|lg|ln)(?:10|2|e)?(?![a-z])|log(?:10)?(?=speed|velocity|friction|cof|mu\b|[uv]\b))", re.IGNORECASE
 )
 _NO_COEFFICIENT = re.compile(
-    r"force|kraft|load|torque|moment|time|zeit|step|cycle|lap|point|run|no\b|nr\b|id\b|count|distance|temp", re.IGNORECASE
+    r"force|kraft|load|torque|moment|speed|veloc|geschw|time|zeit|step|cycle|lap|point|run|no\b|nr\b|id\b|count|distance|temp",
+    re.IGNORECASE,
 )
 
 
@@ -109,7 +110,7 @@ def columns_of(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
     for meaning in WORDS:
         if meaning in settings.columns or meaning == "error":
             continue
-        names = [name for name in _candidates(table, settings, meaning) if not any(name in each for each in found.values())]
+        names = [name for name in candidates(table, settings, meaning) if not any(name in each for each in found.values())]
         if MADE.get(meaning) in table.header:
             names = [MADE[meaning]]
         if not names:
@@ -126,7 +127,7 @@ def columns_of(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
     return found
 
 
-def _candidates(table: TextTable, settings: FitSettings, meaning: str) -> list[str]:
+def candidates(table: TextTable, settings: FitSettings, meaning: str) -> list[str]:
     """Return the columns that may be meant: of the plainest names, and of a fitting unit if there are such."""
     free = undeclared(table, settings)
     if meaning != "error":
@@ -212,7 +213,7 @@ def _error_of(table: TextTable, settings: FitSettings, found: dict[str, list[str
     """Return the column of the standard error of friction, which is after friction if only called 'SD'; empty if none."""
     if "error" in settings.columns or "friction" not in found:
         return ""
-    names = [name for name in _candidates(table, settings, "error") if not any(name in each for each in found.values())]
+    names = [name for name in candidates(table, settings, "error") if not any(name in each for each in found.values())]
     named = [name for name in names if re.search(_FRICTION, normalised_header(name))]
     if named:
         _refuse_twice(table, named, "error")
@@ -344,6 +345,6 @@ def has_column(table: TextTable, settings: FitSettings, meaning: str) -> bool:
     return any(
         _fits(table, name, each, settings)
         for each in wanted
-        for name in _candidates(table, settings, each)
+        for name in candidates(table, settings, each)
         if not (rolls and is_named(name, PATTERNS["sliding_speed"]))
     )
