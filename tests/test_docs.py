@@ -176,6 +176,19 @@ def test_every_public_name_is_documented():
     assert [name for name in sb.__all__ if not re.search(rf"\b{name}\b", code)] == []
 
 
+def test_the_reference_has_every_name_that_a_page_takes_from_a_module_of_the_package():
+    reference = (ROOT / "docs" / "api.rst").read_text()
+    named = {
+        name.rstrip(".")
+        for page in PAGES
+        if page.stem not in ("for_developers", "numerics")  # those who extend the package read its sources
+        for name in re.findall(r"(?<!from )\b(?:sb|stribeck)\.(\w+\.[\w.]+)", TEXT[page])
+    }
+    assert len(named) > 30
+    listed = set(re.findall(r"^   ([\w.]+)$", reference, re.M))  # the page of a module or a class has its members
+    assert {name for name in named if not listed & {name, name.rpartition(".")[0]}} == set()
+
+
 def names_in_tables():
     """Return the names in code type of the tables of symbols.md, without their class, and those of their errors."""
     lines = [line for line in TEXT[ROOT / "docs" / "symbols.md"].splitlines() if line.startswith("|")]

@@ -61,4 +61,7 @@ FORMULAS: tuple[Formula[Any], ...] = tuple(
     for each in vars(module).values()
     if isinstance(each, Formula) and each.function.__module__ == module.__name__
 )
-"""All formulas: for the cylinder the smooth contact, the contact at rest, mixed lubrication; then those of the ball."""
+"""All formulas: for the cylinder the smooth contact, the contact at rest, mixed lubrication; then those of the ball.
+
+:meta hide-value:
+"""

@@ -16,7 +16,7 @@ from stribeck.cli.exits import EXIT_FAILED, answer, complain
 from stribeck.cli.progress import interruptible
 from stribeck.files.writing import check_writable
 from stribeck.quantities.formats import format_percent
-from stribeck.quantities.units import InputError, checked_word
+from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
     from stribeck.cases.case import Case
@@ -294,7 +294,7 @@ def experiment_command(
     from stribeck.experiments.experiment import load_experiment, predict_experiment
 
     experiment = load_experiment(folder)
-    names = list(experiment.models) if model is None else [checked_word("model", model, experiment.models)]
+    names = list(experiment.models) if model is None else [model]
     with interruptible() as progress:
         found = [predict_experiment(experiment, name, progress) for name in names]
     answer(json, lambda: _experiment_content(experiment, found), lambda: _experiment_lines(experiment, found, verbose))

@@ -22,7 +22,7 @@ from stribeck.files.toml import read_toml
 from stribeck.files.writing import PathLike, path_of
 from stribeck.quantities.formats import format_percent
 from stribeck.quantities.results import Card, Told
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.units import InputError, checked_word, show, to_si
 from stribeck.solver.solve import solve
 
 FILE = "experiment.toml"  # Name of the file in the folder of an experiment
@@ -137,7 +137,23 @@ class Prediction(Exported, Told):
 
 
 def load_experiment(folder: PathLike) -> Experiment:
-    """Return the experiment of a folder with ``experiment.toml`` and the table that it names (docs/experiments.md)."""
+    """Read a published experiment from a folder with ``experiment.toml`` and a table (docs/experiments.md).
+
+    Parameters
+    ----------
+    folder : str or path
+        The folder.
+
+    Returns
+    -------
+    Experiment
+        Its inputs with their errors and sources, its rows in SI units, its models.
+
+    Raises
+    ------
+    InputError
+        If a file is missing or wrong; all problems of ``experiment.toml`` are named.
+    """
     path = path_of(folder)
     if not path.is_dir():
         raise InputError(f"folder = {show(str(path))} is no folder; give the one that holds {FILE}.")
@@ -185,12 +201,36 @@ def load_experiment(folder: PathLike) -> Experiment:
 
 
 def predict_experiment(experiment: Experiment, model: str, on_state: Callable[[int, int], object] | None = None) -> Prediction:
-    r"""Return what one of the models of an experiment predicts without a fit, and the errors of prediction and measurement.
+    r"""Predict what an experiment measured, by one of its models and without a fit.
 
+    Parameters
+    ----------
+    experiment : Experiment
+        The experiment, by :func:`load_experiment`.
+    model : str
+        A name of ``experiment.models``.
+    on_state : callable, optional
+        Called with the number of states solved and that of all.
+
+    Returns
+    -------
+    Prediction
+        Prediction, measurement and their ratio for each row, each with its relative standard error.
+
+    Raises
+    ------
+    InputError
+        If the experiment has no such model, or a state of it is no contact.
+    SolveError
+        If a state cannot be solved.
+
+    Notes
+    -----
     .. math:: \sigma^2 = \sigma_0^2 + \sum_k \big(\ln y(x_k (1 + \epsilon_k)) - \ln y(x)\big)^2
 
-    with :math:`\sigma_0` the tolerance of the solver and each input changed by its standard error; those without are named.
+    with :math:`\sigma_0` the tolerance of the solver and each input changed by its standard error.
     """
+    checked_word("model", model, experiment.models)
     inputs = [each for each in experiment.inputs[model] if each.error]
     varied = {key for row in experiment.varied for key in row} - experiment.own[model]
     inputs = [each for each in inputs if not (each.table == "contact" and each.key in varied)]

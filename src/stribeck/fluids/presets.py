@@ -162,4 +162,7 @@ PRESETS: Mapping[str, Preset] = MappingProxyType(
         }
     )
 )
-"""Liquids by name; ``PRESETS["glycerol-water"](weight_fraction=0.8, temperature="20 degC")`` is a :class:`Liquid`."""
+"""Liquids by name; ``PRESETS["glycerol-water"](weight_fraction=0.8, temperature="20 degC")`` is a :class:`Liquid`.
+
+:meta hide-value:
+"""

@@ -12,7 +12,7 @@ with the exact derivatives of the state there, to first order in the errors.
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 from stribeck.asperity_friction.coulomb import Coulomb
 from stribeck.contacts.contact import Contact
@@ -28,9 +28,44 @@ from stribeck.uncertainty.result import exact_inputs
 
 
 def with_intervals(
-    contact: Contact, margins: RegimeMargins, errors: Mapping[str, Any], definition: Definition = "balanced"
+    contact: Contact,
+    margins: RegimeMargins,
+    errors: Mapping[str, Any] | Literal["typical"],
+    definition: Definition = "balanced",
 ) -> RegimeMargins:
-    """Return margins with the 95 % interval of each factor."""
+    """Return margins with the 95 % interval of each factor, to first order in the errors of the inputs.
+
+    Parameters
+    ----------
+    contact : LineContact or PointContact
+        The contact.
+    margins : RegimeMargins
+        Its margins, by :func:`~stribeck.regimes.margins.regime_margins` with the same definition.
+    errors : mapping or "typical"
+        Standard error of each uncertain input, as for :func:`stribeck.propagate`.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
+
+    Returns
+    -------
+    RegimeMargins
+        The same margins, each with ``interval_95`` of its factor; a note says why a factor has none.
+
+    Raises
+    ------
+    InputError
+        If an input is unknown, or its error no positive number.
+
+    Examples
+    --------
+    >>> import stribeck as sb
+    >>> from stribeck.regimes.margins import regime_margins
+    >>> contact = sb.LineContact(radius=0.01, modulus=2.7e6, load=30, viscosity=0.05, speed=0.02, roughness=1e-6, alpha=2,
+    ...                          beta=0.06, boundary_friction=0.7)
+    >>> speed = with_intervals(contact, regime_margins(contact), {"roughness": "20 %", "beta": 0.3}).margins[0]
+    >>> print(f"{speed.more.factor:.2f}, {speed.more.interval_95[0]:.2f} to {speed.more.interval_95[1]:.2f}")
+    1.52, 0.86 to 2.69
+    """
     sigmas = errors_of_kept_inputs(contact, errors)
     if not sigmas:
         return margins

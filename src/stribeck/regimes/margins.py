@@ -380,7 +380,43 @@ def regime_margins(
     on_point: Callable[[int, int], object] | None = None,
     curve: StribeckCurve | None = None,
 ) -> RegimeMargins:
-    """Return by which factors of speed, load, roughness and viscosity the lubrication regime of a contact changes."""
+    """Return by which factors of speed, load, roughness and viscosity the lubrication regime of a contact changes.
+
+    Parameters
+    ----------
+    contact : LineContact or PointContact
+        The contact.
+    rtol : float
+        Relative error of the states; not below 3e-3 for a ball.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
+    on_point : callable, optional
+        Called as the search goes on, with the number of inputs that are done and of all.
+    curve : StribeckCurve, optional
+        The curve of this contact over the speed, which saves solving it again.
+
+    Returns
+    -------
+    RegimeMargins
+        For each input the next regime with less and with more of it, the factor, and the value there [SI]. Each input is
+        varied alone, by a factor of up to 1e6.
+
+    Raises
+    ------
+    InputError
+        If the contact has no units, or an argument is wrong.
+    SolveError
+        If the state of the contact cannot be solved.
+
+    Examples
+    --------
+    >>> import stribeck as sb
+    >>> contact = sb.LineContact(radius=0.01, modulus=2.7e6, load=30, viscosity=0.05, speed=0.02, roughness=1e-6, alpha=2,
+    ...                          beta=0.06, boundary_friction=0.7)
+    >>> speed = regime_margins(contact).margins[0]
+    >>> print(speed.more.regime, f"{speed.more.value:.4f} m/s")
+    hydrodynamic 0.0305 m/s
+    """
     rtol = check_rtol(rtol)
     definition = check_definition(definition)
     if not isinstance(contact, Contact):

@@ -94,12 +94,9 @@ def propagate(
     definition = check_definition(definition)
     checked_kind("contact", contact, Contact, "a LineContact or PointContact")
     checked_kind("transitions", transitions, (bool, np.bool_), "True or False")
-    if errors == "typical":
-        errors = typical_errors(contact, ())
-    checked_kind("errors", errors, Mapping, "a mapping of inputs to their errors, such as {'load': 0.05}, or 'typical'")
-    if not errors:
-        raise InputError("errors is empty; name the inputs that are not exact, such as {'load': 0.05}.")
     sigmas = errors_of_kept_inputs(contact, errors)
+    if not sigmas:
+        raise InputError("errors is empty; name the inputs that are not exact, such as {'load': 0.05}.")
     draws = np.random.default_rng(SEED).standard_normal((SAMPLES, len(sigmas)))
     moves = moves_of(contact, sigmas)
 
@@ -171,8 +168,11 @@ def propagate(
     )
 
 
-def errors_of_kept_inputs(contact: Contact, errors: Mapping[str, Any]) -> StandardErrors:
+def errors_of_kept_inputs(contact: Contact, errors: Mapping[str, Any] | Literal["typical"]) -> StandardErrors:
     """Return the standard error of the logarithm of each uncertain input that a contact keeps."""
+    if errors == "typical":
+        errors = typical_errors(contact, ())
+    checked_kind("errors", errors, Mapping, "a mapping of inputs to their errors, such as {'load': 0.05}, or 'typical'")
     rows = contact.INPUTS.rows
     found: dict[str, float] = {}
     for name, error in errors.items():
