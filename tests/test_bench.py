@@ -334,6 +334,9 @@ def test_overflows_and_codes_of_missing_values_are_no_friction(written, subtests
             assert note_of(found, "10 rows with ") and note_of(found, "left out: 2, 15, 28,") and len(found.row) == 110
     coded = rows.copy()
     coded[13, 1] = 9.99e37
+    for code in (0, -1):
+        single = [f"{u};{curve(u) if u != 3 else code:.3f}" for u in SPEEDS]
+        assert note_of(sb.bench.read(written("\n".join(["speed [mm/s];COF", *single]))), "Friction is not positive at 3 mm/s")
     assert "has '9.99e+37' in row 15, which programs write where a value is missing" in refusal(written(text_of(coded)))
 
 

@@ -560,6 +560,7 @@ def test_per_cent_of_an_error_is_of_friction_where_friction_has_none(written):
 def test_eta_in_greek_is_a_viscosity_and_no_speed(written):
     found = read(written(table("ηU [mPa·s·m/s];COF", lambda u, mu: u / 1000, friction)))
     assert found.abscissa == "speed_viscosity" and found.values.max() == pytest.approx(3e-4)
+    assert read(written(table("ηU/W [1/m];COF", speed, friction))).abscissa == "hersey_per_length"  # W is no unit there
 
 
 def test_a_line_that_cannot_be_split_is_named_with_its_file(written):

@@ -47,9 +47,9 @@ class Part:
 
 def directions(speed: Array, friction: Array) -> tuple[Array, Array]:
     """Return the speed with its sign, and friction positive along the motion."""
-    turns = _runs(np.sign(friction))
-    both = (friction > 0).any() and (friction < 0).any()
-    if not (speed < 0).any() and both and float(np.median([end - first for first, end in turns])) >= FEWEST:
+    turns = [[end - first for first, end in _runs(np.sign(friction)) if way * friction[first] > 0] for way in (1, -1)]
+    both = all(turns)
+    if not (speed < 0).any() and both and min(map(np.median, turns)) >= FEWEST:
         speed = speed * np.where(friction < 0, -1.0, 1.0)
     along = np.sign(speed) * friction if (speed < 0).any() and both else friction
     polarity = 1.0 if np.sum(along) >= 0 else -1.0

@@ -18,7 +18,7 @@ from stribeck.fits.measurements import files_of
 from stribeck.fluids.presets import PRESETS, Preset
 from stribeck.quantities.formats import format_si
 from stribeck.quantities.keywords import answers_typos
-from stribeck.quantities.units import InputError, checked_kind
+from stribeck.quantities.units import InputError, checked_kind, listed
 
 OnFile = Callable[[int, int], Any]  # Called with the number of files read and of all
 
@@ -206,6 +206,12 @@ def _viscosity(point: Point, inputs: dict[str, float], liquid: tuple[Preset, dic
 
 
 def _on_errors(points: Sequence[Point]) -> list[str]:
+    against = [format_si(each.speed, "speed") for each in points if each.friction <= 0]
+    if against:
+        said = (
+            f"Friction is not positive at {listed(against)}: check the zero of the force, and codes of missing values there."
+        )
+        return [said, *_on_errors([each for each in points if each.friction > 0])]
     unknown = [each for each in points if not np.isfinite(each.half_width)]
     if not unknown:
         return ["Errors allow for the correlation of neighbouring values; 'error' is half of the 95 % interval over 1.96."]

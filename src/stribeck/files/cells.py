@@ -83,15 +83,18 @@ def _quotient(header: str) -> re.Match[str] | None:
 
 def normalised_header(header: str) -> str:
     """Return the words of a header in lower case, without its unit, what stands in brackets, and signs."""
-    words = re.sub(r"\(.*?\)|\[.*?\]", " ", split_header(header)[0]) or header
+    return _plain(split_header(header)[0])
+
+
+def _plain(words: str) -> str:
+    words = re.sub(r"\(.*?\)|\[.*?\]", " ", words)
     return " ".join(re.sub(r"[^0-9a-zµμäöüß]+", " ", words.lower().replace("η", "eta ")).split())
 
 
 def is_named(header: str, pattern: str) -> bool:
     """Return whether the words of a header match a pattern."""
     # A word before a dot, as ``DAQ.``, and the letter of the quantity behind its name, as ``speed, u``, may be left out.
-    parts = (header, re.split(r"[.:]", split_header(header)[0])[-1])
-    words = [normalised_header(part) for part in parts]
+    words = (normalised_header(header), _plain(re.split(r"[.:]", split_header(header)[0])[-1]))
     return any(re.fullmatch(pattern, each) for each in (*words, *(_LETTER.sub("", each) for each in words)))
 
 
