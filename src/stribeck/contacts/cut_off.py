@@ -101,10 +101,12 @@ def log_cut_offs(slope: Any, wetted_radius: Any = math.inf) -> tuple[Any, Any]:
 
 
 def far_logarithms(by_shear: Any, by_pressure: Any, minus_log_start: Any, rise: Any) -> tuple[Any, Any, Any]:
-    """Return both logarithms of a film that is thick at its ends, from those of a thin one, and y of the pressure."""
-    at_shear, at_pressure = (np.exp(-2.0 * (minus_log_start + each)) for each in (by_shear, by_pressure))
-    pressure = by_pressure + rise * at_pressure / (1.0 + at_pressure) + 0.5 * np.log1p(at_pressure)
-    return by_shear + 0.5 * np.log1p(at_shear), pressure, at_pressure
+    """Return both logarithms of a film that is thick at its ends, from those of a thin one, and how thin its end is."""
+    # By logarithms: a film that hardly anything shears is thicker than numbers hold.
+    at_shear, at_pressure = (-2.0 * (minus_log_start + each) for each in (by_shear, by_pressure))
+    sheared, pressed = (np.logaddexp(0.0, each) for each in (at_shear, at_pressure))
+    pressure = by_pressure + rise * np.exp(at_pressure - pressed) + 0.5 * pressed
+    return by_shear + 0.5 * sheared, pressure, np.exp(-pressed)
 
 
 def friction_integral(
@@ -128,8 +130,8 @@ def friction_integral(
     moves, edge = speed > 0, far.poiseuille * speed
     if within is None:
         start = _minus_log_cut_off(parts, speed, far)
-        by_shear, by_pressure, at_pressure = far_logarithms(by_shear, by_pressure, start, far.rise)
-        couette, poiseuille, edge = parts["J_couette"], parts["J_poiseuille"], edge / (1.0 + at_pressure)
+        by_shear, by_pressure, thinness = far_logarithms(by_shear, by_pressure, start, far.rise)
+        couette, poiseuille, edge = parts["J_couette"], parts["J_poiseuille"], edge * thinness
     else:
         couette, poiseuille = parts["J_couette"] + within(0, by_shear), parts["J_poiseuille"] + within(1, by_pressure)
         edge = edge + within(2, by_pressure)
@@ -164,8 +166,8 @@ def far_error(
 ) -> Any:
     """Return the largest error of :func:`friction_integral` by the end of a disc of liquid."""
     # The offset of thin films, at least minus one indentation, is left out.
-    from_there = wetted_radius**2 + np.exp(-2.0 * _minus_log_cut_off(parts, speed, far))
-    return (0.5 * np.abs(slide_to_roll) * far.couette + 3.0 * far.poiseuille) * speed / from_there
+    log_from_there = np.logaddexp(2.0 * np.log(wetted_radius), -2.0 * _minus_log_cut_off(parts, speed, far))
+    return (0.5 * np.abs(slide_to_roll) * far.couette + 3.0 * far.poiseuille) * speed * np.exp(-log_from_there)
 
 
 def is_far(model: Model, wetted_radius: Any) -> Any:
