@@ -52,6 +52,7 @@ SAME = {
     "unsorted": "speed [m/s];friction\n1;0.125\n0.001;0.5\n0.1;0.0625\n0.01;0.25",
     "comments and empty lines": "# run 12\n\nspeed [m/s];friction\n0.001;0.5\n\n# pause\n0.01;0.25\n0.1;0.0625\n1;0.125\n;\n",
     "missing values": PLAIN + "\n2;\n;0.3\nNaN;0.1\n3;n/a\n#DIV/0!;0.1\n3;inf",
+    "a first row without friction": PLAIN.replace("\n", "\n1;\n", 1),
     "other columns": "time;speed [m/s];friction;remark\n" + "9;0.001;0.5;x\n9;0.01;0.25;x\n9;0.1;0.0625;x\n9;1;0.125;x",
     "trailing separators": PLAIN.replace("\n", ";\n", 2).replace("friction;", "friction"),
 }

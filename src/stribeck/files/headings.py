@@ -238,6 +238,6 @@ def _numbers_in(text: str) -> int:
 
 
 def _are_units(cells: Sequence[str]) -> bool:
-    """Return whether most cells are units and none a number."""
+    """Return whether most cells are units, and not all of these numbers such as 1, the unit of a ratio."""
     given = [cell for cell in cells if cell.lower() not in MISSING_CELLS]
-    return bool(given) and 2 * sum(map(looks_like_units, given)) > len(given)
+    return 2 * sum(map(looks_like_units, given)) > len(given) and not all(map(has_number, given))
