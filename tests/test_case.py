@@ -121,6 +121,7 @@ WRONG_TOP = {
     "solver = 3": "solver = 3 must be a table, [solver].",
     'speed = "1 m/s"': "speed = '1 m/s' is not a known key; it belongs in the table [contact].",
     "curves = 5": "curves = 5 is not a known key; did you mean curve.",
+    "[flud]\nmodel = 'eyring'": "flud = {'model': 'eyring'} is not a known key; did you mean fluid.",
 }
 
 

@@ -19,7 +19,7 @@ from stribeck.cases.case import (
 from stribeck.cases.case import KEYS as KEYS_OF_STROKE
 from stribeck.cases.fit_settings import FitSettings, check_fit_table, with_bench_keys
 from stribeck.cases.law import ERRORS_OF_SURFACES, INPUTS_OF_SURFACES, KEYS_OF_SURFACES, LAW_KEY, SURFACE, law_of_file
-from stribeck.cases.model_parts import in_file, take_parts
+from stribeck.cases.model_parts import PART_TABLES, in_file, take_parts
 from stribeck.cases.tables import AS_GIVEN, HEAD, Key, Keys, noted, one_of, read_tables, tolerance, whole
 from stribeck.contact_laws.law import own_inputs
 from stribeck.contact_laws.scaled import NAMED_LAWS
@@ -101,11 +101,10 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     elsewhere = tuple(own for part, own in IN_PLACE_OF.items() if parts.get(part, tables.get(part)) is not None)
     problems += model.problems
     fit = bench = FitSettings(geometry=geometry)
+    fit_table, bench_table, correlations = (table.pop(name, {}) for name in ("fit", "bench", "correlations"))
     with noted(problems):
-        fit = check_fit_table(table.pop("fit", {}), geometry, tables.get("fluid"))
-        bench = with_bench_keys(fit, tables, "bench")
-        table.pop("bench", None)
-    correlations = table.pop("correlations", {})
+        fit = check_fit_table(fit_table, geometry, tables.get("fluid"))
+        bench = with_bench_keys(fit, {"bench": bench_table}, "bench")
     found = _read_contact(table, problems, inputs, elsewhere)
     checked = read_tables(table, _keys_of_case(geometry), problems)
     facts: dict[str, float] = {}
@@ -180,7 +179,7 @@ def _refuse(path: Path, problems: list[str]) -> None:
 
 
 def _keys_of_case(geometry: Geometry) -> dict[str, Keys]:
-    """Return what the tables of a case may have; the inputs of its contact are read before."""
+    """Return what the tables of a case may have; those without keys here were read before."""
     points, rtol = DEFAULT_POINTS_AND_RTOL[geometry]
     return {
         "contact": {**dict.fromkeys((*INPUT_TABLES[geometry].quantities, "slide_to_roll"), AS_GIVEN), "law": LAW_KEY},
@@ -192,7 +191,7 @@ def _keys_of_case(geometry: Geometry) -> dict[str, Keys]:
         "stroke": KEYS_OF_STROKE,
         "solver": keys_of_solver(rtol),
         **KEYS_OF_SURFACES,
-        "correlations": {},
+        **dict.fromkeys((*PART_TABLES, "fit", "bench", "correlations"), {}),
         "check": dict.fromkeys(FACTS, Key(lambda name, value: FACTS[name].checked(value))),
         "": HEAD,
     }
