@@ -255,6 +255,15 @@ def test_a_bad_value_is_marked_with_its_sentence_and_the_picture_stays(open_page
     check_numbers(page, now)
 
 
+def test_numbers_of_the_answer_before_are_pale_while_the_next_is_computed(open_page):
+    page = open_page()
+    page.evaluate("document.querySelector('.explorer').classList.add('working')")
+    pale = "each => [...document.querySelectorAll(each)].every(one => getComputedStyle(one).opacity < 0.5)"
+    for each in (".regime", ".answer dl", ".verdict", ".ways", ".numbers table", ".chart"):
+        assert page.evaluate(pale, each), each
+    assert page.evaluate("getComputedStyle(document.querySelector('.status')).opacity") == "1"
+
+
 def test_a_case_is_loaded_and_a_wrong_one_is_refused_in_sentences(open_page, tmp_path):
     page = open_page()
     seal = EXAMPLES / "nitrile_seal.toml"

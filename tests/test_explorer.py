@@ -626,7 +626,9 @@ def test_every_input_and_number_has_its_words_and_an_anchor_of_the_page_of_words
     for name in choices.CHOICES:
         assert choices.list_of(START, name)["help"] and f'id="{name}"' in page
     for row in parts["numbers"]:
-        assert row["help"] and f'id="{row["key"]}"' in page, row["key"]
+        assert row["help"] and row["tip"].endswith(".") and f'id="{row["key"]}"' in page, row["key"]
+    [load] = re.findall('<dt id="load">.*?</dd>', page)
+    assert load.index("[N/m]") < load.index("Of a ball") < load.index("[N]")
 
 
 # --- whether the model applies ---

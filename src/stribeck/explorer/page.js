@@ -141,11 +141,11 @@ export default {
           <q-item-label header>Examples</q-item-label>
           <q-item v-for="each in examples" :key="each" clickable v-close-popup @click="act('example', each)"><q-item-section>{{ each }}</q-item-section></q-item>
         </q-list></q-menu></q-btn>
-        <q-btn flat dense no-caps icon="download" label="Save" title="Download picture, data or case, or copy the link or the code"><q-menu><q-list>
+        <q-btn flat dense no-caps icon="download" label="Save" title="Download picture, data or case"><q-menu><q-list>
           <q-item v-for="(kind, label) in kinds" :key="kind" clickable v-close-popup @click="download(kind)"><q-item-section>{{ label }}</q-item-section></q-item>
         </q-list></q-menu></q-btn>
         <q-btn flat dense no-caps icon="undo" aria-label="Undo" title="Undo (Ctrl-Z)" :disable="!undo" @click="act('undo')"/>
-        <q-btn flat dense no-caps icon="redo" aria-label="Redo" title="Redo (Ctrl-Shift-Z)" :disable="!redo" @click="act('redo')"/>
+        <q-btn flat dense no-caps icon="redo" aria-label="Redo" title="Redo (Ctrl-Y)" :disable="!redo" @click="act('redo')"/>
         <q-btn flat dense no-caps icon="push_pin" label="Pin" title="Keep this curve to compare (p)" @click="act('pin')"/>
         <q-btn flat dense no-caps icon="content_copy" label="Copy" title="Copy the address of this state (l), or a program that makes it"><q-menu><q-list>
           <q-item clickable v-close-popup @click="copy"><q-item-section>Link to this state</q-item-section></q-item>
@@ -242,8 +242,8 @@ export default {
           <table>
             <tr v-if="numbers.some(each => each.interval)"><td></td><td></td><th scope="col">95 %</th></tr>
             <tr v-for="each in numbers" :key="each.key" :data-key="each.key" :data-value="each.value" :data-error="each.error">
-              <th scope="row">{{ each.label }}<ask :name="each.key" :label="each.label" :words="each.help"></ask></th>
-              <td :title="each.tip.startsWith('±') ? 'error of the solver: ' + each.tip : each.tip">{{ each.text }}</td><td>{{ each.interval }}</td>
+              <th scope="row">{{ each.label }}<ask :name="each.key" :label="each.label" :words="each.help + '. ' + each.tip"></ask></th>
+              <td :title="each.tip">{{ each.text }}</td><td>{{ each.interval }}</td>
             </tr>
           </table>
           <p class="note" v-for="each in remarks">{{ each }}</p>

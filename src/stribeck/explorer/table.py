@@ -59,7 +59,7 @@ class Row:
     error: float  # Its estimated absolute error; zero for what follows from the inputs alone, nan where it is not known
     text: str  # The number as shown, with its unit
     help: str = ""  # What it is
-    tip: str = ""  # The error of the solver, for a tooltip
+    tip: str = ""  # The error of the solver, in a sentence
     interval: str = ""  # The 95 % interval by the errors of the inputs; empty where none are given
 
 
@@ -82,7 +82,8 @@ def state_rows(solution: BaseSolution, definition: Definition) -> Iterator[Row]:
     )
     for each in (*numbers, of_asperities):
         value, error = map(_plain, each.texts)
-        tip = "from the inputs" if each.error == 0 else error
+        tip = f"Error of the solver: {error}." if error else "It has no stated error."
+        tip = "It follows from the inputs." if each.error == 0 else tip
         yield Row(each.name, each.label[0].upper() + each.label[1:], each.value, each.error, value, each.meaning, tip)
 
 
@@ -100,7 +101,8 @@ def _transition_rows(answer: Answer) -> Iterator[Row]:
         factor = mark.value / speed if speed > 0 else math.inf
         text = _plain(format_si(mark.value, "speed"))
         text = f"{text} ({_times(factor)})" if speed > 0 else text
-        tip = "located on solved states" if math.isnan(mark.error) else f"± {format_percent(mark.error, 1)}"
+        is_solved = math.isnan(mark.error)
+        tip = "Located on solved states." if is_solved else f"Error of the solver: ± {format_percent(mark.error, 1)}."
         entered = ENTERED.get((answer.regime, name), "")
         crossing = over["speed"].crossing_into(entered) if "speed" in over else None
         interval = "" if crossing is None else _interval(crossing)

@@ -196,7 +196,7 @@ ROLES = {
 def help_of_choice(name: str, keys: tuple[str, ...]) -> str:
     """Return what a list is about, where a case file has that, and what the numbers of a choice are."""
     choice = CHOICES[name]
-    where = f"In a case file it is {f'{choice.key} of ' if choice.key else ''}[{choice.table}]." if choice.table else ""
+    where = f"In a case file it stands in [{choice.table}]{choice.key and f' as {choice.key}'}." if choice.table else ""
     return " ".join(filter(None, [ROLES[name], where, *(plain_words(NUMBERS[key]) for key in keys)]))
 
 
