@@ -169,6 +169,10 @@ def test_what_has_no_stress_is_refused_with_a_sentence(seal, subtests):
         (lambda c: ShearStressTable([1e-3, 1e-2], [1e5]), "give a stress for each speed"),
         (lambda c: sb.solve(sb.Groups(1e-5, 0.1, 1e-4), asperity_friction=ShearStress(TAU)), "needs a contact in SI units"),
         (lambda c: sb.solve(sb.Groups(1e-5, 0.1, 1e-4)).friction(ShearStress(TAU)), "needs a contact in SI units"),
+        (
+            lambda c: sb.stribeck_curve(load=0.1, roughness=1e-4, speed=[1e-6, 1e-3], boundary_friction=ShearStress(TAU)),
+            "needs a contact in SI units",
+        ),
     ]:
         with subtests.test(words), pytest.raises(sb.InputError, match=words):
             make(seal)

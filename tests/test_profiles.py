@@ -204,13 +204,13 @@ def test_a_body_with_grooves_is_not_reversed_by_itself():
     mirrored, turned = (
         sb.profiles.dry_contact(each, 200.0, 1e7)
         for each in (
-            sb.profiles.Grooved(None, body=oil_first, **grooves),
-            sb.profiles.Grooved(None, body=lip, reversed=True, **grooves),
+            sb.profiles.Grooved(body=oil_first, **grooves),
+            sb.profiles.Grooved(body=lip, reversed=True, **grooves),
         )
     )
     assert (turned.left_edge, turned.right_edge) == pytest.approx((mirrored.left_edge, mirrored.right_edge))
     with pytest.raises(sb.InputError, match="give reversed = True to the grooves"):
-        sb.profiles.Grooved(None, body=replace(lip, reversed=True), **grooves)
+        sb.profiles.Grooved(body=replace(lip, reversed=True), **grooves)
 
 
 def test_what_is_made_for_the_parabola_refuses_a_shape():
@@ -385,10 +385,11 @@ def test_a_case_names_a_shape_and_its_check_says_how_steep_it_is_and_why_the_fil
     assert checks["shape"]["value"] == pytest.approx(0.202, abs=2e-3)
     assert "ends at the exit" in checks["shape"]["sentence"]
     assert "contact width a/R" not in checks
+    grooves = "groove_depth = 1e-6\ngroove_pitch = 5e-5\ngrooved_width = 1e-3\n"
     for text, sentence in (
         (f"[contact]\nradius = 0.01\n{lines}\n[profile]\n{lip}", "are both given"),
         (f'[contact]\n{lines}\n[profile]\nshape = "wedge"\n', "shape = 'wedge'"),
-        (f'[contact]\n{lines}\n[profile]\nshape = "grooved"\n', "base_radius is missing"),
+        (f'[contact]\n{lines}\n[profile]\nshape = "grooved"\n{grooves}', "base_radius is missing"),
         (f"[contact]\n{lines}\n[profile]\ntip_radius = 1e-3\n", "shape is missing"),
     ):
         case.write_text(text)

@@ -11,6 +11,7 @@ from fit_data import TRUE as CONTACT
 from fit_data import noisy
 
 import stribeck as sb
+from stribeck.asperity_friction import ShearStress
 
 
 @pytest.fixture(scope="module")
@@ -145,8 +146,12 @@ def test_a_state_and_a_curve_are_in_si_units(state, curve):
 
 
 def test_a_state_and_a_curve_are_ready_for_json(state, curve):
-    for each in (state, curve):
-        assert set(json.loads(json.dumps(each.to_dict()))) == set(each.to_dict())
+    smooth = sb.solve(sb.Groups(1e-3, 0.1, 0))
+    seal = sb.load_case(EXAMPLES / "rod_seal.toml").contact.replace(asperity_friction=ShearStress("0.2 MPa"))
+    sheared = sb.stribeck_curve(seal, speed=["1 mm/s", "10 mm/s"])
+    for each in (state, curve, smooth, sheared):
+        assert set(json.loads(json.dumps(each.to_dict(), allow_nan=False))) == set(each.to_dict())
+    assert smooth.to_dict()["lambda_ratio"] is sheared.to_dict()["boundary_friction"] is None
     points, units = (json.loads(json.dumps(curve.to_dict()))[name] for name in ("points", "units"))
     numbers = {name for name in points if isinstance(points[name][0], float) and not name.endswith("_error")} - {"value"}
     assert numbers <= set(units) and units["hertz_pressure"] == state.to_dict()["units"]["hertz_pressure"] == "Pa"

@@ -52,7 +52,7 @@ class OverArea(AsperityFriction):
 
     def coefficient_at_small_area(self, contact: Any) -> float:
         """Return the stress over the mean pressure in the real contacts."""
-        if contact.roughness == 0:
+        if contact is None or contact.roughness == 0:
             return self.factor(contact)
         slope = area_slope(contact.law) / (contact.beta * contact.modulus)
         return float(self.stress(_sliding_speed(contact)) * slope)

@@ -144,18 +144,12 @@ class PressureFilm(ByValue, Told, Tabled):
         return (*found, "Asperities are left out: where they carry a few per cent of the load, films are up to 10 % thicker.")
 
     def to_dict(self) -> dict[str, Any]:
-        """Return all numbers with their errors.
-
-        Returns
-        -------
-        dict
-            Films in m by name, the inlets as dictionaries, range and notes.
-        """
+        """Return films in m by name with their errors, the inlets as dictionaries, range and notes, ready for JSON."""
         found: dict[str, Any] = {name: getattr(self, name) for name in Films._fields}
         found |= {f"{name}_error": value for name, value in self.error._asdict().items()}
         found |= {name: vars(each).copy() for name, each in zip(("forward_inlet", "backward_inlet"), self.inlets, strict=True)}
         units = dict.fromkeys(Films._fields, "m") | INLET_UNITS
-        return found | {"in_range": self.valid, "range": self.range, "units": units, "notes": list(self.notes)}
+        return found | {"in_range": self.valid, "range": self.range, "units": units, "notes": self.notes}
 
     def _card(self) -> Card:
         is_zero = abs(self.net) < NEGLIGIBLE * self.error.net

@@ -190,7 +190,7 @@ class Checks(Exported, Told):
 
     def to_dict(self) -> dict[str, Any]:
         """Return verdict and checks, ready for JSON."""
-        return {"applies": self.applies, "checks": [each.to_dict() for each in self.checks]}
+        return {"applies": self.applies, "checks": self.checks}
 
     def _labelled(self) -> Labelled:
         columns = columns_of_records("check", self.checks, Check._labels)

@@ -33,13 +33,13 @@ def curve_dict(curve: Any) -> dict[str, Any]:
         **about,
         **_settings(curve),
         "units": (about["units"] or {}) | units,
-        "minimum": None if curve.minimum is None else curve.minimum.to_dict(),
+        "minimum": curve.minimum,
         **marks_of(curve),
-        "points": {"value": curve.values.tolist(), **{name: each.tolist() for name, (each, _, _) in columns.items()}},
+        "points": {"value": curve.values, **{name: each for name, (each, _, _) in columns.items()}},
         "complete": curve.outcome.ok,
         "outcome": curve.outcome.name,
         "message": curve.outcome.value,
-        "notes": list(curve.notes),
+        "notes": curve.notes,
     }
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, is_dataclass
+from functools import wraps
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -22,7 +23,7 @@ Labelled = tuple[Mapping[str, Column], Mapping[str, Column], Mapping[str, Any]]
 
 # What methods return, by their names
 RETURNED = {
-    "to_dict": "dict\n    Numbers, text, lists and dictionaries of these.",
+    "to_dict": "dict\n    Numbers, text, lists and dictionaries of these; None where a number does not exist.",
     "to_si": "dict of str to float\n    By name.",
 }
 
@@ -43,21 +44,31 @@ def ready_for_json(content: Any) -> Any:
 
 
 def json_of(result: Any, names: str, **others: Any) -> dict[str, Any]:
-    """Return attributes of a result and what else there is to say, ready for JSON."""
-    found = {name: getattr(result, name) for name in names.split()} | others
-    return {name: ready_for_json(content) for name, content in found.items()}
+    """Return attributes of a result and what else there is to say."""
+    return {name: getattr(result, name) for name in names.split()} | others
+
+
+def _ready(method: Callable[..., dict[str, Any]]) -> Callable[..., dict[str, Any]]:
+    @wraps(method)
+    def to_dict(self: Any, *args: Any, **options: Any) -> dict[str, Any]:
+        found: dict[str, Any] = ready_for_json(method(self, *args, **options))
+        return found
+
+    return to_dict
 
 
 class Tabled:
     """A result that is a labelled array."""
 
     def __init_subclass__(cls) -> None:
-        """Say of ``to_dict`` and ``to_si`` what they return."""
+        """Say of ``to_dict`` and ``to_si`` what they return, the former ready for JSON."""
         super().__init_subclass__()
         for name, returns in RETURNED.items():
             method = vars(cls).get(name)
             if method is not None and "Returns" not in method.__doc__:
                 method.__doc__ = complete_docstring(method, {}, returns)
+            if name == "to_dict" and method is not None:
+                setattr(cls, name, _ready(method))
 
     def _labelled(self) -> Labelled:
         raise NotImplementedError
@@ -96,8 +107,7 @@ class Record(Described, Tabled):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the numbers and words under the names of the attributes, ready for JSON."""
-        values = {name: getattr(self, name) for name in self._labels}
-        return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
+        return {name: getattr(self, name) for name in self._labels}
 
     def _labelled(self) -> Labelled:
         columns = columns_of_records((), [self], self._labels)

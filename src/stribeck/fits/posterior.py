@@ -14,7 +14,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.files.results import json_of
+from stribeck.files.results import json_of, ready_for_json
 from stribeck.files.writing import need_extra
 from stribeck.fits.intervals import information_of
 from stribeck.fits.least_squares import Minimum
@@ -53,7 +53,9 @@ class Posterior(Described):
         """Return intervals by input and how well they are known, ready for JSON."""
         labels = [each.label for each in self.inputs]
         ends = {name: dict(zip(labels, getattr(self, name), strict=True)) for name in ("interval_68", "interval_95")}
-        return json_of(self, "acceptance autocorrelation_time converged message", draws=len(self.samples), **ends)
+        names = "acceptance autocorrelation_time converged message"
+        found: dict[str, Any] = ready_for_json(json_of(self, names, draws=len(self.samples), **ends))
+        return found
 
 
 def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int], object] | None = None) -> Posterior:

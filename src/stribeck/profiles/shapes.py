@@ -99,14 +99,6 @@ class Grooved(Shape):
     name: ClassVar[str] = "grooved"
     label: ClassVar[str] = "cylinder with grooves"
 
-    base_radius: Input = _length(
-        label="radius of the cylinder with grooves",
-        symbol="$R$",
-        typical="10 mm",
-        source="a rod",
-        optional=True,
-        is_free=False,
-    )
     groove_depth: Input = _length(
         label="depth of the grooves", symbol="$d$", typical="1 um", source="a honed or laser-cut surface"
     )
@@ -115,6 +107,14 @@ class Grooved(Shape):
     )
     grooved_width: Input = _length(
         label="width of the grooved strip", symbol="$2B$", typical="1 mm", source="a few widths of the contact", is_free=False
+    )
+    base_radius: Input = _length(
+        label="radius of the cylinder with grooves",
+        symbol="$R$",
+        typical="10 mm",
+        source="a rod",
+        optional=True,
+        is_free=False,
     )
     body: Profile | None = None
     reversed: bool = False

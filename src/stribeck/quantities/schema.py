@@ -129,9 +129,9 @@ class Input:
         if law is not None:
             found: float = law.__dict__[self.name]
             return found
-        if self.default is None:
+        if self.default is None and not self.optional:
             raise AttributeError(f"{owner.__name__}.{self.name} has no default")
-        return self.default
+        return cast("float", self.default)
 
     def __set__(self, law: object, value: Any) -> None:
         """Set the number of a law that is made; None stands for an optional one that is not given."""

@@ -325,7 +325,7 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
         Returns
         -------
         dict
-            Numbers, text, lists and dictionaries of these; nan or infinity where a quantity does not exist.
+            Numbers, text, lists and dictionaries of these; None where a number does not exist.
         """
         columns = self._columns(boundary_friction, beta, definition)
         found = about_problem(self.groups, self.contact)
@@ -338,7 +338,7 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
             "nodes": self.nodes,
             "outcome": self.outcome.name,
             "message": self.outcome.value,
-            "notes": list(self.notes_for(boundary_friction, beta, definition)),
+            "notes": self.notes_for(boundary_friction, beta, definition),
         }
 
     def _with_numbers(self, fields: xarray.Dataset) -> xarray.Dataset:

@@ -12,7 +12,7 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact, input_texts
 from stribeck.contacts.friction import Definition
 from stribeck.files.datasets import Column
-from stribeck.files.results import Exported, Labelled
+from stribeck.files.results import Exported, Labelled, json_of
 from stribeck.motions.motion import Motion
 from stribeck.numerics.settings import COARSE_RTOL, HALF_DIGITS, NEGLIGIBLE
 from stribeck.quantities.formats import format_error, format_si
@@ -69,19 +69,13 @@ class Stroke(Exported, Told, ByValue):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the numbers over time, and those of the last cycle, with their errors, ready for JSON."""
-        names = ("definition", "cycles", "hertz_half_width", "half_widths")
-        found: dict[str, Any] = {name: getattr(self, name) for name in names}
-        found |= {
-            "largest_contact_load_share": self.largest_contact_load_share,
-            "largest_contact_load_share_error": float(self.errors["contact_load_share"][self._where_largest]),
-            "work": self.work,
-            "work_error": self.work_error,
-        }
-        found |= {name: getattr(self, name).tolist() for name in ("time", "speed", "position")}
+        names = "definition cycles hertz_half_width half_widths largest_contact_load_share work work_error time speed position"
+        share_error = self.errors["contact_load_share"][self._where_largest]
+        found = json_of(self, names, largest_contact_load_share_error=share_error)
         for name, error in self.errors.items():
-            found |= {name: getattr(self, name).tolist(), f"{name}_error": error.tolist()}
+            found |= {name: getattr(self, name), f"{name}_error": error}
         units = {name: each.unit for name, each in self._words.items() if each.unit is not None and name in found}
-        return found | {"units": units, "notes": list(self.notes)}
+        return found | {"units": units, "notes": self.notes}
 
     def _card(self) -> Card:
         last, largest = self.last_cycle, self._where_largest

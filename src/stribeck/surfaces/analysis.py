@@ -189,10 +189,10 @@ class Surface(FittedSurface):
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the numbers of :meth:`to_dataset` in SI units, nan where nothing was found, ready for JSON."""
+        """Return the numbers of :meth:`to_dataset` in SI units, ready for JSON."""
         units = dict.fromkeys(("spacing", "size"), "m") | dict.fromkeys(("body_curvatures", "reliable_wavenumbers"), "m-1")
         units |= units_of(number_columns(self.numbers))
-        return self._about | plain_numbers(self.numbers) | {"units": units, "notes": list(self.notes)}
+        return self._about | plain_numbers(self.numbers) | {"units": units, "notes": self.notes}
 
     def _labelled(self) -> Labelled:
         about = {"title": "What a scan says of a surface"} | self._about | {"notes": "\n".join(self.notes)}

@@ -105,8 +105,8 @@ class CombinedSurface(FittedSurface):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the numbers of :meth:`to_dataset` in SI units, and what each scan says by itself, ready for JSON."""
-        about = {"scans": [each.to_dict() for each in self.surfaces], "found": list(self.fit.found)}
-        told = {"relative_errors": self.errors, "units": units_of(number_columns(self.numbers)), "notes": list(self.notes)}
+        about = {"scans": [each.to_dict() for each in self.surfaces], "found": self.fit.found}
+        told = {"relative_errors": self.errors, "units": units_of(number_columns(self.numbers)), "notes": self.notes}
         return about | plain_numbers(self.numbers) | told
 
     def _labelled(self) -> Labelled:
