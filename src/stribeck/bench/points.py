@@ -63,6 +63,7 @@ def points_of(passes: Sequence[Pass], raw: Sequence[Raw], paths: Sequence[str]) 
     design = np.hstack([base, extra])
     friction, covariance = _least(design, means, errors)
     residuals = (means - design @ friction) / errors
+    left = 1 - np.einsum("ij,jk,ik->i", design, covariance, design) / errors**2  # of each pass, not spent on the parameters
     points, widened = [], list[float]()
     curves = np.array([each.curve for each in passes])
     for curve in range(max(curves) + 1):
@@ -70,7 +71,7 @@ def points_of(passes: Sequence[Pass], raw: Sequence[Raw], paths: Sequence[str]) 
         if not mine.any():
             continue
         levels = np.unique(level[mine])
-        freedom = int(mine.sum()) - len(levels) - extra.shape[1] * (curve == curves[0])
+        freedom = round(float(left[mine].sum()))
         scale = math.sqrt(float(residuals[mine] @ residuals[mine]) / freedom) if freedom >= FEWEST - 1 else 0.0
         own = [each for each, one in zip(passes, mine, strict=True) if one]
         within = sum(each.independent - 1 for each in own) if any(np.ptp(each.values) for each in own) else math.inf
@@ -142,14 +143,26 @@ def _force_zeros(
     loads = np.array([_load(raw[each.file], each) for each in passes])
     times = np.array([each.time for each in passes])
     both = [bool({1, -1} <= set(ways[level == k].tolist())) for k in range(base.shape[1])]
-    said: list[str] = []
-    extra = np.empty((len(passes), 0))
-    for file in np.unique(files):
+    columns: list[tuple[int, str, Array]] = []  # File, what it is of and its column; first the zeros of all files
+    for file in np.unique(files).tolist():
         mine = files == file
-        paired = {k for k in np.unique(level[mine]) if both[k] and {1, -1} <= set(ways[mine & (level == k)].tolist())}
-        if not paired:
-            continue
-        extra, sentence = _zero_of(mine, ways, loads, times, base, extra, means, errors)
+        if any(both[k] and {1, -1} <= set(ways[mine & (level == k)].tolist()) for k in np.unique(level[mine])):
+            columns.append((file, "zero", np.where(mine, ways / np.where(np.isfinite(loads), loads, 1.0), 0.0)))
+    for file, _, force in columns.copy():
+        for name, column in _candidates(files == file, ways, loads, times, force):
+            tried = np.column_stack([base, *(each for *_, each in columns), column])
+            if np.linalg.matrix_rank(tried / errors[:, None]) < tried.shape[1] or tried.shape[1] >= tried.shape[0]:
+                continue
+            found, covariance = _least(tried, means, errors)
+            if abs(found[-1]) > CLEAR * math.sqrt(float(covariance[-1, -1])):
+                columns.append((file, name, column))
+    extra = np.column_stack([np.empty((len(passes), 0)), *(each for *_, each in columns)])
+    found, covariance = _least(np.hstack([base, extra]), means, errors)
+    ends = list(zip(found[base.shape[1] :].tolist(), np.sqrt(np.diag(covariance))[base.shape[1] :].tolist(), strict=True))
+    said: list[str] = []
+    for file in dict.fromkeys(each for each, *_ in columns):
+        own = {name: end for (each, name, _), end in zip(columns, ends, strict=True) if each == file}
+        sentence = _zero_said(own, loads[files == file])
         said.append(f"{paths[file]}: {sentence}" if len(paths) > 1 else sentence)
     one_way = [k for k, there in enumerate(both) if not there]
     if one_way and np.abs(ways).any():
@@ -163,31 +176,23 @@ def _force_zeros(
     return said, extra
 
 
-def _zero_of(
-    mine: Flags, ways: Array, loads: Array, times: Array, base: Array, extra: Array, means: Array, errors: Array
-) -> tuple[Array, str]:
-    """Return the columns with those of the force zero of a file, and of its drift and misalignment where these are clear."""
-    measured = np.isfinite(loads)
-    force = np.where(mine, ways / np.where(measured, loads, 1.0), 0.0)
+def _has_loads(loads: Array) -> bool:
+    """Return whether passes have several loads, all known."""
+    return bool(np.isfinite(loads).all() and np.ptp(loads) > SAME_SPEED * loads.max())
+
+
+def _candidates(mine: Flags, ways: Array, loads: Array, times: Array, force: Array) -> list[tuple[str, Array]]:
+    """Return the columns of what a file may have beside the zero of its force: its drift, and a misalignment."""
     long = float(np.ptp(times[mine]))
     later = (times - times[mine].mean()) / long if long > 0 else np.zeros(len(times))
-    candidates = [("drift", force * later)]
-    if measured.all() and np.ptp(loads[mine]) > SAME_SPEED * loads[mine].max():
-        candidates.append(("misalignment", np.where(mine, ways, 0.0)))
-    taken, names = np.column_stack([extra, force]), ["zero"]
-    for name, column in candidates:
-        tried = np.column_stack([base, taken, column])
-        if np.linalg.matrix_rank(tried / errors[:, None]) < tried.shape[1] or tried.shape[1] >= tried.shape[0]:
-            continue
-        found, covariance = _least(tried, means, errors)
-        if abs(found[-1]) > CLEAR * math.sqrt(float(covariance[-1, -1])):
-            taken, names = np.column_stack([taken, column]), [*names, name]
-    design = np.column_stack([base, taken])
-    found, covariance = _least(design, means, errors)
-    found, doubts = found[-len(names) :], np.sqrt(np.diag(covariance))[-len(names) :]
-    known = bool(measured[mine].all())
+    return [("drift", force * later), *([("misalignment", np.where(mine, ways, 0.0))] if _has_loads(loads[mine]) else [])]
+
+
+def _zero_said(found: dict[str, tuple[float, float]], loads: Array) -> str:
+    """Return the sentence on the zero of the force of a file, its drift and misalignment, each with its standard error."""
+    known = bool(np.isfinite(loads).all())
     parts = []
-    for name, value, doubt in zip(names, found.tolist(), doubts.tolist(), strict=True):
+    for name, (value, doubt) in found.items():
         if name == "misalignment":
             parts.append(f"the load is misaligned by {math.degrees(value):.2g} ± {math.degrees(doubt):.2g} degrees")
             continue
@@ -202,10 +207,10 @@ def _zero_of(
             else f"it drifts by {text} from the first pass to the last"
         )
     several = ""
-    if known and len(candidates) == 1:
-        angle = math.degrees(found[0] / float(np.median(loads[mine])))
+    if known and not _has_loads(loads):
+        angle = math.degrees(found["zero"][0] / float(np.median(loads)))
         several = f" (or the load is misaligned by {angle:.2g} degrees: two loads would tell)"
-    return taken, f"Both directions: {', '.join(parts)}{several}; taken off."
+    return f"Both directions: {', '.join(parts)}{several}; taken off."
 
 
 def _load(raw: Raw, each: Pass) -> float:
