@@ -308,6 +308,7 @@ def test_what_an_address_cannot_mean_is_told(subtests):
         ("law=table&table.file=/etc/passwd", "a link contains its rows instead"),
         ("law=persson&surface.spectrum=x.csv", "a link contains its rows instead"),
         ("law=hertz", "law = 'hertz' must be one of"),
+        ("geometry=triangle", "geometry = 'triangle' must be 'line' or 'point'"),
         ('fit.free=["x"]', "which cannot be fitted"),
         ("curve.points=NaN", "must be a whole number"),
         ("load=3+N/m+%2B-+-1+%25", "load = '3 N/m +- -1 %'"),

@@ -90,10 +90,7 @@ def load_rig(path: str | os.PathLike[str]) -> FitSettings:
 def check_case(tables: dict[str, Any], path: Path) -> Case:
     """Return the case of tables that were read."""
     problems: list[str] = []
-    geometry: Geometry = "line"
-    table = dict(tables)
-    with noted(problems, "contact"):
-        geometry, table = geometry_of(tables)
+    geometry, table = geometry_of(tables, problems)
     inputs = INPUT_TABLES[geometry]
     errors = _split_errors(table, problems)
     model = take_parts(table, path.parent)
@@ -202,14 +199,15 @@ def keys_of_solver(rtol: float) -> Keys:
     return {"rtol": tolerance(rtol), "definition": Key(one_of(*DEFINITIONS), Case.definition)}
 
 
-def geometry_of(tables: dict[str, Any]) -> tuple[Geometry, dict[str, Any]]:
-    """Return the geometry of the contact in a file, and the tables without it."""
+def geometry_of(tables: dict[str, Any], problems: list[str]) -> tuple[Geometry, dict[str, Any]]:
+    """Return the geometry of the contact in a file, that of a line where it is wrong, and the tables without it."""
     found = dict(tables)
     geometry: Geometry = "line"
     for name in ("contact", "groups"):
         if isinstance(found.get(name), dict) and "geometry" in found[name]:
             found[name] = dict(found[name])
-            geometry = check_geometry(found[name].pop("geometry"))
+            with noted(problems, name):
+                geometry = check_geometry(found[name].pop("geometry"))
     return geometry, found
 
 

@@ -25,7 +25,7 @@ from stribeck.checks.body import unusual
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.geometries import INPUT_TABLES, LINE
-from stribeck.contacts.groups import GROUP_INPUTS, Geometry, Groups, Physics
+from stribeck.contacts.groups import GROUP_INPUTS, Groups, Physics
 from stribeck.files.datasets import Column
 from stribeck.files.results import Labelled, Tabled
 from stribeck.files.toml import read_toml
@@ -334,9 +334,7 @@ def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
     tables = read_toml(path, "sweep file", "[vary]")
     own: dict[str, Any] = {name: tables.pop(name) for name in ("design", "vary") if name in tables}
     problems: list[str] = []
-    geometry: Geometry = "line"
-    with noted(problems, "contact" if "contact" in tables else "groups"):
-        geometry, _ = geometry_of(tables)
+    geometry, _ = geometry_of(tables, [])
     si = "groups" not in tables
     vary = own.get("vary")
     if si and isinstance(vary, dict) and NAME in vary:
@@ -410,7 +408,7 @@ def _read_groups(tables: dict[str, Any], axes: dict[str, Axis], path: Path, prob
         **KEYS_OF_SURFACES,
         "": HEAD,
     }
-    geometry, tables = geometry_of(tables)
+    geometry, tables = geometry_of(tables, problems)
     rest = {name: each for name, each in tables.items() if name not in ("contact", *parts)}
     checked = read_tables(rest, keys, problems)
     missing = [name for name in GROUPS if name not in axes and name not in tables["groups"]]
