@@ -2,6 +2,8 @@
 
 import json
 import math
+import re
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -417,3 +419,19 @@ def test_the_states_of_the_fitted_laws_are_those_of_the_solver_of_today():
         found = sb.solve(ball(speed, load, kappa), rtol=1e-3)
         assert abs(found.contact_load_share - share) < 1e-3
         assert math.isclose(found.J_pcx, pcx, rel_tol=4e-3)
+
+
+def test_the_film_in_si_units_on_the_page_of_balls_is_the_formula():
+    text = (Path(__file__).parents[1] / "docs" / "for_ball_on_disc.md").read_text()
+    printed = next(line for line in text.splitlines() if line.startswith(r"$$h(0) = "))
+    numbers = [float(Fraction(each)) for each in re.findall(r"\d\.\d+|-?\d+/\d+", printed)]
+    factor, speed_power, load_power, leakage, group_power, power = numbers
+    for speed in np.geomspace(1e-4, 1.0, 5):
+        ball = sb.PointContact(
+            radius=0.01, modulus=1e6, load=1, viscosity=0.01, speed=speed, roughness=0, alpha=2, beta=0.1, boundary_friction=0
+        )
+        film_scale = ball.radius * (ball.viscosity * speed / (ball.modulus * ball.radius)) ** speed_power
+        uniform_film = factor * film_scale * (ball.load / (ball.modulus * ball.radius**2)) ** load_power
+        page = uniform_film * (1 + leakage * ball.groups.speed**group_power) ** power
+        expected = film.central_gap_slow.function(ball.groups) * ball.hertz.indentation
+        assert page == pytest.approx(expected, rel=5e-4)
