@@ -77,6 +77,7 @@ def test_a_note_that_repeats_a_doubt_is_not_said_twice(capsys, tmp_path):
 # --- progress without a terminal ---
 
 
+@pytest.mark.slow
 def test_a_fit_and_a_comparison_say_how_far_they_are(capsys, monkeypatch, tmp_path):
     monkeypatch.setattr("stribeck.cli.progress.LINE_INTERVAL", 0.0)
     data, case = tmp_path / "data.csv", tmp_path / "case.toml"

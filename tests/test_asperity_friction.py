@@ -97,6 +97,7 @@ def test_a_ball_rubs_by_its_real_area():
     assert area < state.contact.hertz.half_width**2 * math.pi * 1.2
 
 
+@pytest.mark.slow
 def test_a_curve_has_the_friction_of_its_states_and_its_least(seal):
     contact = seal.replace(shear_stress=TAU, speed_exponent=0.1)
     curve = sb.stribeck_curve(contact, speed=(0.3, 1.0), points=3)

@@ -355,6 +355,7 @@ def test_a_curve_read_off_it_is_the_solved_one():
         sb.stribeck_curve(TRUE, points=3, method="table")
 
 
+@pytest.mark.slow
 def test_a_phase_diagram_read_off_it_is_the_solved_one():
     pytest.importorskip("xarray")
     grid = {"load": 0.1, "roughness": [0.0, 1e-5, 1e-4], "speed": (1e-6, 1.0), "points": {"speed": 5}}

@@ -196,6 +196,7 @@ def test_a_whole_curve_is_within_three_times_its_stated_errors_and_nearly_everyw
     assert max(ratios) < 3 and np.mean(np.array(ratios) < 1) > 0.9
 
 
+@pytest.mark.slow
 def test_a_curve_goes_through_the_speed_at_which_a_cavity_opens():
     """At 159 um/s: the curve ended there, and took hundreds of states to come so far."""
     inputs = {"radius": 0.01, "modulus": 2.1e6, "load": 50.0, "viscosity": 0.05, "speed": 0.02, "roughness": 1e-6}

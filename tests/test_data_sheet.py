@@ -253,6 +253,7 @@ def test_the_probability_of_a_regime_is_that_of_its_speed():
     assert found.regimes["hydrodynamic"] == pytest.approx(0.5 * math.erfc(0.1 / sigma / math.sqrt(2)), abs=0.01)
 
 
+@pytest.mark.slow
 def test_transitions_move_with_the_inputs():
     found = sb.propagate(TRUE, {"viscosity": 0.2})
     spread = found["minimum of friction"]
@@ -510,6 +511,7 @@ def test_a_new_case_of_a_seal_names_what_there_is():
         sb.new_case("point", seal="shaft")
 
 
+@pytest.mark.slow
 def test_the_interval_is_the_one_that_solved_samples_confirmed():
     """Read once more between all samples, with nothing to check it, the share of the asperities had 0.59 as its lower end."""
     seal = sb.load_case(EXAMPLES / "lip_seal.toml").contact.replace(speed=5e-6)

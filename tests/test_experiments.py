@@ -79,6 +79,7 @@ def test_a_sample_with_an_input_of_its_own_is_a_run_worth_measuring(tmp_path):
     assert "smooth, " in plan.plot().legends[0].get_texts()[0].get_text()
 
 
+@pytest.mark.slow
 def test_the_errors_of_a_run_on_a_surface_whose_beta_follows_from_the_roughness_come_true(tmp_path):
     path = tmp_path / "case.toml"
     surface = {"h_rms": '"1 um"', "q0": '"1e4 1/m"', "q1": '"1e7 1/m"', "hurst": 0.8}
@@ -178,6 +179,7 @@ def test_a_prior_is_no_evidence_for_a_model(tmp_path):
     assert each.aicc == pytest.approx(12 * math.log(square / 12) + 2 * 4 + 2 * 4 * 5 / 7, abs=0.01)
 
 
+@pytest.mark.slow
 def test_the_finite_surface_that_is_compared_is_that_of_the_scan_of_the_contact():
     law = sb.load_case(EXAMPLES / "rod_seal.toml").contact.law
     scanned = TRUE.replace(law=law, **law.coefficients)
@@ -200,6 +202,7 @@ def test_too_few_rows_to_judge_the_fitted_numbers_are_refused():
             sb.compare(rows, TRUE, **wrong)
 
 
+@pytest.mark.slow
 def test_an_outlier_does_not_steer_the_comparison_of_robust_fits(tmp_path):
     """With errors given, how far the outlier lies is no evidence either."""
     case, differences = settled(tmp_path, robust=True), []

@@ -716,6 +716,7 @@ def test_a_fit_takes_the_inputs_that_are_chosen_and_tells_intervals_and_residual
     assert chart["x"]["low"] < speeds[0] < speeds[-1] < chart["x"]["high"] and chart["x"]["unit"] == "m/s"
 
 
+@pytest.mark.slow
 def test_a_fit_on_the_page_takes_the_table_fit_of_its_case_as_the_command_does(tmp_path):
     asked = {"free": ["boundary_friction"], "noise": "absolute", "magnitudes": True, "units": {"speed": "mm/s"}}
     asked |= {"columns": {"speed": "v", "friction": "f"}, "priors": {"boundary_friction": {"value": 0.4, "factor": 1.1}}}

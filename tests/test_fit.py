@@ -91,6 +91,7 @@ def test_an_end_of_an_interval_is_where_the_best_fit_of_the_other_inputs_is_wors
         assert math.sqrt(misfit(held) - misfit(fitted)) == pytest.approx(quantile, abs=0.02)
 
 
+@pytest.mark.slow
 def test_an_end_of_an_interval_is_right_where_other_inputs_reach_their_bounds(tmp_path):
     """A plateau alone: roughness and modulus go anywhere together.  The falls foretold beyond bounds opened the lower end."""
     from scipy.stats import t

@@ -68,6 +68,7 @@ def test_exact_friction_of_a_ball_gives_its_inputs():
     assert found["roughness"].unit == "m" and found.contact.roughness == found["roughness"].value
 
 
+@pytest.mark.slow
 def test_states_are_solved_as_well_as_the_data_are_measured():
     exact = frictions(TRUE)
     noisy = measured(exact * np.exp(0.03 * np.random.default_rng(3).standard_normal(5)))
@@ -94,6 +95,7 @@ def experiment(seed, exact):
     return measured((exact * noise).ravel(), inputs=({},) * 4)
 
 
+@pytest.mark.slow
 def test_a_fit_reaches_its_optimum_where_errors_of_the_states_hide_it():
     # The first states are solved from others than the next ones, and their friction jumps by a hundredth of their errors.
     exact = frictions(TRUE)
@@ -226,6 +228,7 @@ def test_a_fit_of_a_ball_in_a_drop_counts_the_friction_up_to_its_rim():
     assert np.abs(found.friction / solved - 1).max() <= found.model_error + 1e-4 <= 1e-3
 
 
+@pytest.mark.slow
 def test_a_drop_ends_at_as_many_contact_radii_as_it_does_at_each_load():
     """With those at the load of the case for all curves exact data gave 106 mPa s for 100."""
     loads, speeds = (0.3, 0.9), np.array([1.0, 1.5, 2.0])

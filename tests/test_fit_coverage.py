@@ -50,6 +50,7 @@ def test_intervals_cover_in_200_experiments():
     check(*covered(200, 1000), 200)
 
 
+@pytest.mark.slow
 def test_friction_of_a_full_film_alone_leaves_boundary_friction_open():
     # The fit may lie where rough, slippery asperities follow the noise: smooth ones of any friction explain it as well.
     start = TRUE.replace(boundary_friction=0.42, roughness=1.3e-6)

@@ -48,6 +48,7 @@ def test_the_width_of_a_land_is_found_and_the_case_is_written_with_it(tmp_path, 
     assert sb.load_case(out).contact.land_width == pytest.approx(width["value"], rel=1e-8)
 
 
+@pytest.mark.slow
 def test_the_fitted_friction_is_that_of_the_fitted_contact_and_its_slopes_are_those_of_solved_friction():
     lip = sb.LineContact(profile=sb.profiles.Lip(**LIP), **CONTACT)
     speeds = SPEEDS[::2]

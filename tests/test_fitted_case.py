@@ -107,10 +107,13 @@ def check_round_trip(capsys, folder, contact, tables, free):
         assert math.isclose(getattr(back, each["name"]), each["value"], rel_tol=1e-8)
 
 
-def test_a_fitted_case_has_the_fitted_curve_whatever_gives_its_law_and_its_inputs(subtests, capsys, tmp_path_factory):
-    for name, (contact, tables, *free) in CASES.items():
-        with subtests.test(name=name):
-            check_round_trip(capsys, tmp_path_factory.mktemp("case"), contact, tables, free)
+SHORT = ("Persson, spectrum", "data sheet", "two bodies")  # The files, the liquid and both bodies of all
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[] if name in SHORT else pytest.mark.slow) for name in CASES])
+def test_a_fitted_case_has_the_fitted_curve_whatever_gives_its_law_and_its_inputs(capsys, tmp_path, name):
+    contact, tables, *free = CASES[name]
+    check_round_trip(capsys, tmp_path, contact, tables, free)
 
 
 def test_a_case_that_cannot_be_written_is_refused_before_the_fit(capsys, tmp_path):
@@ -123,6 +126,7 @@ def test_a_case_that_cannot_be_written_is_refused_before_the_fit(capsys, tmp_pat
     assert not picture.exists() and not (tmp_path / "fitted.toml").exists()
 
 
+@pytest.mark.slow
 def test_a_fitted_case_has_the_errors_of_the_fit_and_what_still_holds_of_the_correlations_it_had(capsys, tmp_path, subtests):
     uncertain = {"load": '"20 N/m +- 3 %"', "radius": '"10 mm +- 2 %"'}
     surface = {"surface": SURFACE | {"h_rms": '"1 um +- 9 %"', "beta_error": '"9 %"'}}
@@ -176,6 +180,7 @@ def test_errors_of_a_fitted_surface_propagate_to_the_band_of_the_fit(tmp_path):
     assert math.log(spread.interval_95[1] / spread.interval_95[0]) == pytest.approx(math.log(high / low), rel=0.1)
 
 
+@pytest.mark.slow
 def test_the_preferred_model_of_several_files_is_a_case_that_solves_as_it_was_fitted(capsys, tmp_path, subtests):
     speeds = np.geomspace(3e-3, 0.3, 5)
     case, out = tmp_path / "case.toml", tmp_path / "elsewhere.toml"

@@ -38,6 +38,7 @@ def test_the_law_of_a_liquid_is_found_with_its_numbers(subtests):
                     assert abs(getattr(found.law, number) - getattr(law, number)) < 3 * error
 
 
+@pytest.mark.slow
 def test_standard_errors_hold_the_truth_as_often_as_they_say():
     scores = []
     for seed in range(24):

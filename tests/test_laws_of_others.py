@@ -124,6 +124,7 @@ def test_a_new_case_shows_them(run):
     assert 'viscosity_law = "linearly-stiffening"   # with stiffening = "20 1/GPa"' in text
 
 
+@pytest.mark.slow
 def test_the_page_offers_them_a_fit_frees_their_numbers_a_sweep_takes_them_and_wrong_ones_are_refused(run):
     options, details, *numbers, said = json.loads(run(SCRIPT.with_name("python"), "-c", IN_PYTHON).stdout)
     assert ["yasuda", "Carreau and Yasuda"] in options

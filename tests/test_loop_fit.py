@@ -52,6 +52,7 @@ def test_boundary_friction_comes_out_of_a_loop_over_position(case, tmp_path):
     assert axes.get_xlabel() == "position (mm)"
 
 
+@pytest.mark.slow
 def test_an_input_that_ends_at_its_bound_is_named_and_neighbours_without_correlation_are_called_so(case, tmp_path):
     path = loop_of(tmp_path / "loop.csv", sb.load_case(case).contact.replace(boundary_friction=0.5), "time [s]", 24, seed=3)
     case.write_text(case.read_text() + '\n[fit]\nfree = ["boundary_friction"]\nbounds.boundary_friction = [0.55, 0.9]\n')
@@ -60,6 +61,7 @@ def test_an_input_that_ends_at_its_bound_is_named_and_neighbours_without_correla
     assert "boundary_friction ended at its bound 0.55: the data would move it further" in found.notes[0]
 
 
+@pytest.mark.slow
 def test_positions_count_from_either_end_however_far_the_zero_of_the_force_is_off(case, tmp_path):
     path = loop_of(tmp_path / "loop.csv", sb.load_case(case).contact.replace(boundary_friction=0.5))
     rows = np.loadtxt(path, delimiter=",", skiprows=1)
@@ -74,6 +76,7 @@ def test_positions_count_from_either_end_however_far_the_zero_of_the_force_is_of
     assert not any("the other way" in note for note in found.notes)
 
 
+@pytest.mark.slow
 def test_a_drift_of_the_force_is_found_and_taken_off(case, tmp_path):
     path = loop_of(tmp_path / "loop.csv", sb.load_case(case).contact.replace(boundary_friction=0.5))
     x, steady = np.loadtxt(path, delimiter=",", skiprows=1, unpack=True)

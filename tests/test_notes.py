@@ -75,6 +75,7 @@ def test_the_minimum_of_the_demo_says_that_its_gap_is_beyond_the_range(pdms, cap
     assert note in call(capsys, "regimes", PDMS, "-v").out
 
 
+@pytest.mark.slow
 def test_a_surface_with_fewer_high_asperities_has_its_minimum_a_fifth_lower():
     """Loads 0.1 and 1 at relative roughness 0.01, with the gaps of contact_laws.md: the numbers that page states."""
     law = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=6e-6, q0=1e4, q1=1e6, hurst=0.8))

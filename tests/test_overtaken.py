@@ -23,6 +23,7 @@ def sizes(found, wall):
     return np.abs([getattr(one.friction(DRY, BETA), wall) for one in found.solutions])
 
 
+@pytest.mark.slow
 def test_the_minimum_of_an_overtaken_substrate_is_that_of_the_cylinder_that_overtakes_in_its_place(subtests):
     for ratio, cavitation in [(0.5, "none"), (4.0, "exit")]:
         with subtests.test(ratio=ratio, cavitation=cavitation):

@@ -170,6 +170,7 @@ def test_formulas_stand_beside_the_solved_transitions(diagram):
 # --- the merging ---
 
 
+@pytest.mark.slow
 def test_the_merging_roughness_parts_curves_with_a_minimum_and_takes_the_quotient_of_the_friction_coefficients():
     contact = contact_of(sb.Groups(1.0, 0.1, 1e-3)).replace(boundary_friction=BETA)
     line = sb.phase_diagram(contact, speed="1 mm/s", merging=True).roughness_without_minimum
@@ -185,6 +186,7 @@ def test_the_merging_roughness_parts_curves_with_a_minimum_and_takes_the_quotien
 # --- units ---
 
 
+@pytest.mark.slow
 def test_diagrams_in_si_and_in_groups_agree(diagram, si_diagram):
     groups, row = diagram.isel(load=1, roughness=[0, 2]), si_diagram.isel(load=1)
     np.testing.assert_allclose(si_diagram.load_group, LOADS)

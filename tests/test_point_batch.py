@@ -55,6 +55,7 @@ def test_a_batch_of_balls_becomes_a_dataset_and_a_pickle(found):
     assert pickle.loads(pickle.dumps(found)) == found
 
 
+@pytest.mark.slow
 def test_a_batch_of_balls_in_a_fluid_that_thins_has_the_friction_of_its_contacts():
     contact = BALL.replace(fluid=sb.fluids.Carreau("1 ms", 0.5))
     found = sb.solve_batch(contact, speed=[0.01], rtol=1e-2)

@@ -33,6 +33,7 @@ def test_each_point_of_a_curve_is_the_state_solved_from_cold(curve):
     assert curve.friction[4] == pytest.approx(cold.friction(MU0, BETA).total, rel=2 * RTOL)
 
 
+@pytest.mark.slow
 def test_an_interval_much_longer_than_the_next_does_not_magnify_errors_of_its_states():
     like = sb.Groups(1.0, 0.0239862, 0.00588111, geometry="point")
     curve = sb.stribeck_curve(like, speed=(0.4, 3.018), points=9, rtol=RTOL, cavitation="exit")
@@ -181,6 +182,7 @@ def test_a_curve_of_a_ball_chooses_its_speeds_from_plateau_to_branch():
     assert found.observable("fluid_load_share")[0] < 1e-3
 
 
+@pytest.mark.slow
 def test_errors_between_states_hold_where_two_meshes_agree_by_chance_in_the_middle():
     """The central gap erred by 1.3 times what was stated: that of both meshes beside it was the same."""
     groups = sb.Groups(1e-2, 0.1, 3e-4, geometry="point")

@@ -100,6 +100,7 @@ def test_the_interval_of_friction_of_a_ball_in_a_drop_lies_around_its_friction()
         assert end == pytest.approx(sb.solve(there, rtol=1e-3).friction().total, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_marks_of_a_coarse_curve_are_those_of_a_fine_one():
     near = tuple(BALL.speed * factor for factor in (0.3, 300.0))
     found, fine = (sb.stribeck_curve(BALL, speed=near, points=5, rtol=rtol).transitions for rtol in (3e-3, 1e-3))

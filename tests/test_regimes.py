@@ -245,6 +245,7 @@ def moved_by(capsys, tmp_path, error=0.01):
     return {key: math.log(mark["interval_95"][1] / mark["interval_95"][0]) / width for key, mark in marks.items()}
 
 
+@pytest.mark.slow
 def test_the_interval_of_a_margin_is_that_of_transitions_solved_again(capsys, tmp_path):
     found = moved_by(capsys, tmp_path)
     curves = [
@@ -259,6 +260,7 @@ def test_the_interval_of_a_margin_is_that_of_transitions_solved_again(capsys, tm
         assert found["speed", regime] == pytest.approx(expected, rel=1e-2, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_margins_and_transitions_move_alike_with_correlated_errors(capsys, tmp_path):
     path = tmp_path / "case.toml"
     values = {name: repr(value) for name, value in CONTACT.replace(speed="5 mm/s").inputs()}
@@ -292,6 +294,7 @@ def test_viscosity_has_no_margin_where_speed_does_not_stand_for_it(subtests):
             assert any("Viscosity has no margins" in note for note in found.notes)
 
 
+@pytest.mark.slow
 def test_load_has_no_margin_where_the_contact_grows_in_its_own_way():
     """That of a lip had followed the series of a parabola, to where asperities cause 14 % of the friction, not 10 %."""
     lip = CONTACT.replace(profile=sb.profiles.Lip(0.35, 0.7, "50 um"), cavitation="exit")
@@ -307,6 +310,7 @@ def test_a_margin_of_the_roughness_of_a_spectrum_says_that_it_keeps_beta(mixed):
     assert not any("beta" in note for note in mixed.notes)
 
 
+@pytest.mark.slow
 def test_slow_speeds_at_which_the_fluid_keeps_its_share_are_not_searched():
     heavy = CONTACT.replace(load="600 N/m")
     assert heavy.groups.load > 1

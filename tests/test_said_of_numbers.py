@@ -40,6 +40,7 @@ def test_an_interval_says_which_inputs_count_as_exact(capsys):
     assert "beta" not in str(sb.propagate(surface, {"roughness": 0.1}, transitions=False)).split("count as exact")[0]
 
 
+@pytest.mark.slow
 def test_transitions_beyond_the_speeds_that_were_searched_are_not_told():
     contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact
     curve = sb.stribeck_curve(contact, points=5, rtol=1e-3)
@@ -72,6 +73,7 @@ def test_the_interval_of_a_curved_friction_ends_where_thousands_of_solved_states
     assert abs(found[0] - low) <= 0.07 * (high - low) and abs(found[1] - high) <= 0.07 * (high - low)
 
 
+@pytest.mark.slow
 def test_an_interval_that_solved_states_do_not_settle_says_so():
     contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact.replace(speed="30 mm/s")
     found = sb.propagate(contact, {"speed": 2.9, "load": 2.9, "roughness": 2.9, "viscosity": 2.9}, transitions=False)

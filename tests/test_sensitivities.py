@@ -117,6 +117,7 @@ def contact_in_hertz_units(groups, barus=0.0, cavity=0.0, **parts):
     return contact.replace(**parts)
 
 
+@pytest.mark.slow
 def test_sensitivities_of_both_frictions_are_differences_of_solved_states(subtests):
     """Without the moment of the pressure beyond the panels in x, those of the printed one were off by up to 8e-4."""
     for parts in [{"cavity": -0.02}, {"cavitation": "exit", "barus": 2.0}]:
@@ -130,6 +131,7 @@ def test_sensitivities_of_both_frictions_are_differences_of_solved_states(subtes
                     assert found[name] == pytest.approx(expected, abs=1e-5), (definition, name)
 
 
+@pytest.mark.slow
 def test_the_printed_friction_of_a_thin_film_has_the_slopes_of_solved_states():
     # Asperities carry all; the closed form of the printed friction was wrong by 3e-4 here.
     contact = contact_in_hertz_units(sb.Groups(5.39e-11, 9.87, 0.0369))

@@ -45,6 +45,7 @@ def misses(sets, spread=0.0):
     return found
 
 
+@pytest.mark.slow
 def test_intervals_of_three_scans_hold_the_true_surface():
     assert max(misses(3, spread=0.3).values()) <= 1
 

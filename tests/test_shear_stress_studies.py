@@ -124,6 +124,7 @@ def test_a_fit_needs_a_first_value_of_the_exponent(seal, measured):
         sb.fit(measured, seal, free=["shear_stress"])
 
 
+@pytest.mark.slow
 def test_the_regime_changes_where_the_margins_say(contact):
     margins = {each.name: each for each in regime_margins(contact, rtol=1e-4).margins}
     assert "viscosity" not in margins  # the stress follows the speed
@@ -170,6 +171,7 @@ def test_the_interval_of_friction_holds_the_states_at_its_ends(contact):
     assert by_load.spreads[0].interval_95 == pytest.approx(falling, rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_diagram_has_the_friction_of_its_states_and_says_which_it_is(contact):
     diagram = sb.phase_diagram(contact, speed=[0.05, 0.1, 0.2], load=770.0, roughness=1e-6)
     state = sb.solve(contact.replace(speed=0.1))

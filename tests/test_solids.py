@@ -133,6 +133,7 @@ def test_a_wide_panel_acts_on_near_and_far_nodes_as_by_its_parts(subtests):
             np.testing.assert_allclose(found, exact, rtol=0, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_smooth_film_on_a_body_that_remembers_is_found_however_thin_it_is():
     """Its outlet moves with the film; predicted at fixed places it took six times the steps, and the path was given up."""
     thinner = sb.solve(sb.Groups(1.7e-12, 0.14, 0.0), solid=Prony((0.4, 0.04), (3.5, 3.5)), rtol=1e-4)

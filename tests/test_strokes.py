@@ -209,6 +209,7 @@ def test_a_contact_that_runs_into_a_thin_wake_draws_in_no_more_than_that():
     assert abs(few.central_film_thickness[-1] - own.central_film_thickness[-1]) < few.errors["central_film_thickness"][-1]
 
 
+@pytest.mark.slow
 def test_no_liquid_comes_out_of_a_wake_that_has_not_gone_into_it():
     """On no position of the way back has it drawn in more than it has left from there on: a flooded inlet has."""
     contact = CONTACT.replace(cavitation="exit")

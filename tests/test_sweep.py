@@ -342,6 +342,7 @@ def right(sweep, step=32):
         assert float(found.friction_balanced[i]) == pytest.approx(state.friction().total, rel=2e-6)
 
 
+@pytest.mark.slow
 def test_a_killed_worker_process_is_replaced(tmp_path):
     file, store = write(tmp_path, RANDOM.format(kind="sobol", points=32)), tmp_path / "store"
     process = start(file, store, "--workers", "2")

@@ -116,6 +116,7 @@ rtol = 1e-2
 """
 
 
+@pytest.mark.slow
 def test_balls_have_the_fluid_of_their_load(tmp_path):
     """In Hertz units a relaxation time is another at each load."""
     table = sb.sweep(write(tmp_path, BALL), tmp_path / "store").to_dataset(grid=False)
