@@ -311,10 +311,11 @@ def _fit_notes(topography: Topography, body: Form, measured: MeasuredSpectrum, f
             "scan; measure a larger area."
         )
     if "q1" not in fit.found:
+        height, beta = (format_percent(rise - 1) for rise in fit.rise_by_shorter_waves)
         notes.append(
             f"The spectrum goes on beyond {format_si(2 * math.pi / measured.highest, 'length')} ({measured.highest_reason}): "
-            "slope, curvature and contact area would grow with finer sampling, and alpha would fall. beta would rise by up to "
-            f"{format_percent(fit.beta_of_shorter_waves - 1)} if the power law goes on to 1 nm; the intervals allow for that."
+            "slope, curvature and contact area would grow with finer sampling, and alpha would fall. If the power law goes on "
+            f"to 1 nm, h_rms rises by {height}, which is not in its error, and beta by {beta}; the intervals allow for that."
         )
     if "noise" in fit.found:
         notes.append("The spectrum flattens at short wavelengths as instrument noise does; the noise was subtracted.")

@@ -154,12 +154,11 @@ class SelfAffineFit(Described):
         return alpha, beta
 
     @property
-    def beta_of_shorter_waves(self) -> float:
-        """Largest beta over the value, if the power law goes on to shorter waves than were seen."""
+    def rise_by_shorter_waves(self) -> tuple[float, float]:
+        """Largest h_rms and beta over their values, if the power law goes on to shorter waves than were seen."""
         known = self._admissible_fits[0]
-        ends = (exponential_limit(known.surface(known.theta, finest=finest))[1] for finest in (False, not known.q1_found))
-        seen, all_waves = ends
-        return all_waves / seen
+        seen, all_waves = (known.surface(known.theta, finest=finest) for finest in (False, not known.q1_found))
+        return all_waves.h_rms / seen.h_rms, exponential_limit(all_waves)[1] / exponential_limit(seen)[1]
 
     def at(self, wavenumber: Array, *, is_line: bool = False, noise: bool = True) -> Array:
         """Return the fitted spectrum, as a map or a line shows it.
