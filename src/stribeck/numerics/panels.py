@@ -47,12 +47,15 @@ class Rule:
     """Nodal values -> value at -1."""
     derivative: Array
     """Nodal values -> nodal values of the derivative."""
+    barycentric: Array
+    """Weights of the nodes in the barycentric formula, the largest one."""
 
     @classmethod
     def of(cls, nodes: Array, weights: Array) -> Rule:
         """Return the rule with these nodes and weights."""
         to_legendre = np.asarray(np.linalg.inv(legendre.legvander(nodes, nodes.size - 1)), dtype=np.float64)
         antiderivatives = legendre.legint(np.eye(nodes.size), lbnd=-1)
+        barycentric = 1.0 / np.prod(np.subtract.outer(nodes, nodes) + np.eye(nodes.size), axis=1)
         return cls(
             nodes=nodes,
             weights=weights,
@@ -61,11 +64,16 @@ class Rule:
             left_half=legendre.legval(0.0, antiderivatives) @ to_legendre,
             left_end=legendre.legval(-1.0, np.eye(nodes.size)) @ to_legendre,
             derivative=legendre.legval(nodes, legendre.legder(np.eye(nodes.size))).T @ to_legendre,
+            barycentric=barycentric / np.abs(barycentric).max(),
         )
 
     def interpolation(self, points: Array) -> Array:
         """Return the matrix from nodal values to those at ``points`` of the interpolating polynomial, shape (..., nodes)."""
-        return np.asarray(legendre.legvander(points, self.nodes.size - 1) @ self.to_legendre)
+        away = np.subtract.outer(points, self.nodes)
+        away[away == 0.0] = np.finfo(float).tiny  # at a node all others have no weight
+        found = self.barycentric / away
+        found /= found.sum(axis=-1, keepdims=True)
+        return found
 
 
 @lru_cache(maxsize=32)
