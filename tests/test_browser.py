@@ -228,7 +228,11 @@ def test_parts_of_the_model_are_chosen_and_refused_at_their_place(open_page):
     assert contact_of(page) == now and thickness.get_attribute("aria-invalid") == "true"
     now = at_rest(page, lambda: (thickness.fill("4 mm"), thickness.press("Enter")))
     assert now.contact.solid.layer_thickness == 0.004
+    pick(page, "asperity_friction", "shear-stress")
+    refused = "document.querySelector('[data-choice=asperity_friction] .sentence').textContent"
+    page.wait_for_function(f"{refused}.includes('real area of contact, which law = \\'exponential\\' does not know')")
     now = at_rest(page, lambda: pick(page, "preset", "glycerol-water"))
+    assert page.evaluate(refused) == ""
     assert now.contact.viscosity == sb.fluids.PRESETS["glycerol-water"]().viscosity
     check_numbers(page, now)
     other = open_page(urlparse(address_of(page)).query)

@@ -64,7 +64,7 @@ class OverArea(AsperityFriction):
             return
         name = "exponential" if contact.law is None else contact.law.name
         raise InputError(
-            f"asperity_friction = {show(self)} needs the real area of contact, which law = {name!r} does not know: give the "
+            f"asperity_friction = {self.name!r} needs the real area of contact, which law = {name!r} does not know: give the "
             "spectrum of the surface, as a table [surface] of a case or law = sb.contact_laws.persson_law(...); or give "
             "boundary_friction in its place."
         )

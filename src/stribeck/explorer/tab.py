@@ -142,9 +142,12 @@ class Tab:
         try:
             changed = action(self.inputs, *given)
         except InputError as problem:
-            self.problems[name] = {"typed": str(text), "sentence": str(problem), "wrong": key}
+            is_pick = action is choices.choose
+            self.problems[name] = {"typed": str(text), "sentence": str(problem), "wrong": key, "is_pick": is_pick}
             self.show_form()
             return
+        # The list of a refused choice has gone back: why it was refused may no longer be true.
+        self.problems = {each: problem for each, problem in self.problems.items() if not problem.get("is_pick")}
         self.restore(name)
         self.change(changed)
 
