@@ -124,8 +124,8 @@ class Checks(Exported, Told):
     @property
     def unchecked(self) -> tuple[str, ...]:
         """What could not be checked, and what is missing for it, in sentences."""
-        facts = [f"{fact} ({name})" for name, fact in self.missing.items()]
-        return (*self.unsolved, *([f"facts not given: {', '.join(facts)}."] if facts else []))
+        facts = [f"{name} (give {fact})" for name, fact in self.missing.items()]
+        return (*self.unsolved, *([f"{', '.join(facts)}."] if facts else []))
 
     @property
     def _conditions(self) -> list[str]:

@@ -143,8 +143,8 @@ def tail(subject: Subject) -> Check | None:
         for name, (speed, friction) in moves.items()
         if max(abs(speed), abs(friction)) >= MIN_STATED_CHANGE
     )
-    moved = f"these move: {changes}" if changes else "nothing moves by 1 % or more"
-    sentence = f"With the highest asperities of a finite surface {moved}. A spectrum does not determine their height."
+    moved = f"the results then change: {changes}" if changes else "no result then changes by 1 % or more"
+    sentence = f"A finite surface has fewer of the highest asperities; {moved}. A spectrum does not determine their height."
     verdict = verdict_of(largest, TAIL_CHANGE_FINE)
     is_notable = largest >= MIN_STATED_CHANGE
     return Check("tail of the contact law", largest, TAIL_CHANGE_FINE, verdict, sentence, error=largest, notable=is_notable)

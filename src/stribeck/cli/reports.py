@@ -130,7 +130,7 @@ def _shortened(sentences: Sequence[str], room: int) -> list[str]:
 
 MORE_OF_STATE = "-v shows inputs, all films and positions, both frictions and full notes."
 
-MORE_OF_CURVE = "-v shows inputs, errors and full notes; -o FILE writes points, --plot FILE draws."
+MORE_OF_CURVE = "-v shows inputs, errors, full notes; -o FILE writes points, --plot FILE draws."
 
 
 def solution_lines(
