@@ -142,12 +142,12 @@ class Tab:
         try:
             changed = action(self.inputs, *given)
         except InputError as problem:
-            is_pick = action is choices.choose
-            self.problems[name] = {"typed": str(text), "sentence": str(problem), "wrong": key, "is_pick": is_pick}
+            of = "choice" if action is choices.choose else "field"
+            self.problems[name] = {"typed": str(text), "sentence": str(problem), "wrong": key, "of": of}
             self.show_form()
             return
         # The list of a refused choice has gone back: why it was refused may no longer be true.
-        self.problems = {each: problem for each, problem in self.problems.items() if not problem.get("is_pick")}
+        self.problems = {each: problem for each, problem in self.problems.items() if problem.get("of") != "choice"}
         self.restore(name)
         self.change(changed)
 
