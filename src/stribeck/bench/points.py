@@ -151,14 +151,17 @@ def _force_zeros(
     for file, _, force in columns.copy():
         for name, column in _candidates(files == file, ways, loads, times, force):
             tried = np.column_stack([base, *(each for *_, each in columns), column])
-            if np.linalg.matrix_rank(tried / errors[:, None]) < tried.shape[1] or tried.shape[1] >= tried.shape[0]:
-                continue
-            found, covariance = _least(tried, means, errors)
-            if abs(found[-1]) > CLEAR * math.sqrt(float(covariance[-1, -1])):
+            if np.linalg.matrix_rank(tried / errors[:, None]) == tried.shape[1] < tried.shape[0]:
                 columns.append((file, name, column))
-    extra = np.column_stack([np.empty((len(passes), 0)), *(each for *_, each in columns)])
-    found, covariance = _least(np.hstack([base, extra]), means, errors)
-    ends = list(zip(found[base.shape[1] :].tolist(), np.sqrt(np.diag(covariance))[base.shape[1] :].tolist(), strict=True))
+    while True:  # the least clear goes until all are
+        extra = np.column_stack([np.empty((len(passes), 0)), *(each for *_, each in columns)])
+        found, covariance = _least(np.hstack([base, extra]), means, errors)
+        doubts = np.sqrt(np.diag(covariance))
+        ends = list(zip(found[base.shape[1] :].tolist(), doubts[base.shape[1] :].tolist(), strict=True))
+        clear = [math.inf if name == "zero" else abs(size) / e for (_, name, _), (size, e) in zip(columns, ends, strict=True)]
+        if min(clear, default=math.inf) > CLEAR:
+            break
+        del columns[int(np.argmin(clear))]
     said: list[str] = []
     for file in dict.fromkeys(each for each, *_ in columns):
         own = {name: end for (each, name, _), end in zip(columns, ends, strict=True) if each == file}
