@@ -147,6 +147,15 @@ def check(contact: Contact, *, definition: Definition = "balanced", **facts: Any
     2 to 15 of a ball.
     What cannot be solved is named among :attr:`stribeck.results.Checks.unchecked`.
     Source of the limits: docs/checks.md.
+
+    Examples
+    --------
+    >>> import stribeck as sb
+    >>> contact = sb.LineContact(radius=0.01, modulus=2.7e6, load=30, viscosity=0.05, speed=0.02, roughness=1e-6, alpha=2,
+    ...                          beta=0.06, boundary_friction=0.7)
+    >>> found = sb.check(contact, work_of_adhesion="1 mJ/m^2")
+    >>> found.applies, found["contact law at the minimum"].verdict
+    (True, 'doubtful')
     """
     if not hasattr(contact, "hertz"):
         raise InputError(f"contact = {show(contact)}; give a LineContact or PointContact, whose inputs are in SI units.")

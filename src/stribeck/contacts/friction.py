@@ -58,6 +58,11 @@ def regime_of(fluid_load_share: float, contact_friction_share: float) -> Regime:
     ------
     InputError
         If one is no number.
+
+    Examples
+    --------
+    >>> regime_of(0.2, 0.99)
+    'mixed'
     """
     fluid = to_si(fluid_load_share, "number", "fluid_load_share")
     contact = to_si(contact_friction_share, "number", "contact_friction_share")

@@ -103,6 +103,15 @@ def stribeck_curve(
     -----
     A few states are solved and expanded into Taylor series; the points are read off these, each within ``rtol`` by its
     estimated error.  More points cost next to nothing.
+
+    Examples
+    --------
+    >>> import stribeck as sb
+    >>> contact = sb.LineContact(radius=0.01, modulus=2.7e6, load=30, viscosity=0.05, speed=0.02, roughness=1e-6, alpha=2,
+    ...                          beta=0.06, boundary_friction=0.7)
+    >>> minimum = sb.stribeck_curve(contact).minimum
+    >>> print(f"{minimum.friction:.4f} at {1e3 * minimum.speed:.1f} mm/s")
+    0.0347 at 27.6 mm/s
     """
     rtol = check_rtol(rtol)
     definition = check_definition(definition)

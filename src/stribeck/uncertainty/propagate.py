@@ -90,6 +90,15 @@ def propagate(
     (``test_data_sheet.py``); ``notes`` say where they do not.  Transitions move to either side as far as by one standard
     error of each input alone, and are left out where that loses them or their interval leaves the speeds that were searched.
     With Persson's law ``beta`` follows the roughness unless it has an error.
+
+    Examples
+    --------
+    >>> import stribeck as sb
+    >>> contact = sb.LineContact(radius=0.01, modulus=2.7e6, load=30, viscosity=0.05, speed=0.02, roughness=1e-6, alpha=2,
+    ...                          beta=0.06, boundary_friction=0.7)
+    >>> low, high = sb.propagate(contact, {"roughness": "20 %", "beta": 0.3}, transitions=False)["friction"].interval_95
+    >>> print(f"{low:.2f} to {high:.2f}")
+    0.03 to 0.10
     """
     definition = check_definition(definition)
     checked_kind("contact", contact, Contact, "a LineContact or PointContact")
