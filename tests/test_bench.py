@@ -237,6 +237,8 @@ def test_a_temperature_gives_the_viscosity_of_an_oil(tmp_path):
     data = sb.read_measurements(tmp_path / "warm.csv")
     assert data.abscissa == "speed_viscosity" and data.values == pytest.approx(found.speed * found.viscosity)
     assert "no condition" in refusal(EXAMPLE, fluid="iso-vg colour=46")
+    assert "each once" in refusal(EXAMPLE, fluid="iso-vg grade=46 grade=32") and "one of 'water'" in refusal(EXAMPLE, fluid="")
+    assert note_of(sb.bench.read(EXAMPLE, fluid="iso-vg"), "ISO VG (grade = 46")  # which nobody has said
     assert "one temperature only" in refusal(EXAMPLE, fluid="xanthan")
 
 

@@ -232,7 +232,10 @@ def _on_viscosity(points: Sequence[Point], liquid: tuple[Preset, dict[str, Any]]
     lowest, highest = f"{min(known):.1f}", f"{max(known):.1f}"
     temperature = f"{lowest} °C" if lowest == highest else f"{lowest} to {highest} °C"
     if liquid is not None:
-        return [f"Viscosity of {liquid[0].label} at {temperature}, of each point."]
+        preset, conditions = liquid
+        taken = {name: value for name, value in (preset.conditions | conditions).items() if name != "temperature"}
+        told = f" ({', '.join(f'{name} = {value}' for name, value in taken.items())})" if taken else ""
+        return [f"Viscosity of {preset.label}{told} at {temperature}, of each point."]
     return [
         f"The temperature was {temperature}; name the liquid (--fluid 'iso-vg grade=46', in Python fluid=) to have its "
         "viscosity there."

@@ -431,9 +431,10 @@ def with_bench_keys(settings: FitSettings, given: Mapping[str, Any], table: str 
 def _liquid(fluid: Any) -> dict[str, Any]:
     """Return a liquid and its conditions, as ``iso-vg grade=46`` or a table gives them, as the table ``[fluid]``."""
     if isinstance(fluid, str):
-        word, *rest = fluid.split()
-        if not all("=" in each for each in rest):
-            raise InputError(f"fluid = {show(fluid)}; write a liquid and its conditions, as 'iso-vg grade=46'.")
+        word, *rest = fluid.split() or [""]
+        keys = [each.split("=", 1)[0] for each in rest]
+        if not all("=" in each for each in rest) or len({*keys}) < len(keys):
+            raise InputError(f"fluid = {show(fluid)}; write a liquid and its conditions, each once, as 'iso-vg grade=46'.")
         given: dict[str, Any] = {
             "preset": word,
             **{key: number_or_text(text) for key, text in (each.split("=", 1) for each in rest)},

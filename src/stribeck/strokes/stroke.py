@@ -169,7 +169,7 @@ def stroke(
                 Outcome.STALLED,
                 None,
                 f"{describe(groups)}: the step from t = {lost.time * unit:.4g} s does not arrive, however short. Ask "
-                f"for more steps, or for a motion whose speed does not jump.{TOO_THIN if inlet == 'own-wake' else ''}",
+                f"for more steps, or for a motion whose speed changes more slowly.{TOO_THIN if inlet == 'own-wake' else ''}",
             ) from None
         done += len(instants) - 1
     return _result(contact, motion, inlet, count, time, speed, path, marches)
