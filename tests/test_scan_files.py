@@ -75,6 +75,16 @@ def test_a_code_for_no_height_is_missing_and_named():
     assert any("4 of 400 points" in note for note in scan.repaired().notes)
 
 
+def test_two_codes_for_no_height_are_both_missing(tmp_path):
+    """Points above and below the range: the gap from one code to the heights was taken for one between heights."""
+    for codes in ((99999, -9999), (32767, -32768)):
+        heights = 100 * (MAP - MAP.max()).copy()
+        heights[3:5, 3:5], heights[20:22, 9] = codes
+        text = "\n".join("\t".join(f"{height:.4f}" for height in row) for row in heights)
+        scan = read(tmp_path, text, spacing="1 um", height_unit="nm")
+        assert scan.missing == 6 and len(scan.notes) == 2
+
+
 SIZES = {
     "nanometres": "# Width: 48000 nm\n# Height: 24000 nm\n# Value units: µm\n",
     "without comments": "Width: 48.00 µm\nHeight: 24.00 µm\nValue units: µm\n",

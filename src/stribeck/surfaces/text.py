@@ -448,14 +448,14 @@ def _values(
 
 def mark_codes(z: Array, declared: tuple[float, ...] = ()) -> list[str]:
     """Put NaN in the place of numbers that stand for no height, and return a note on each."""
-    notes = []
-    for code in sorted({*declared} | {sign * size for size in MISSING_CODES for sign in (-1, 1)}):
+    notes, codes = [], sorted({*declared} | {sign * size for size in MISSING_CODES for sign in (-1, 1)})
+    heights = np.sort(z[~np.isin(z, codes) & ~np.isnan(z)])
+    for code in codes:
         here = z == code
         if not here.any():
             continue
-        rest = np.sort(z[~here & ~np.isnan(z)])
-        # Other heights lie nearer to one another than the nearest of them to a code.
-        if code in declared or (rest.size > 1 and np.abs(rest - code).min() > np.diff(rest).max()):
+        # Heights lie nearer to one another than the nearest of them to a code.
+        if code in declared or (heights.size > 1 and np.abs(heights - code).min() > np.diff(heights).max()):
             notes.append(_missing_note(int(here.sum()), "hold", f"{code:g}, a code for no height,"))
             z[here] = np.nan
     return notes
