@@ -315,7 +315,7 @@ def _fit_notes(topography: Topography, body: Form, measured: MeasuredSpectrum, f
         notes.append(
             f"The spectrum goes on beyond {format_si(2 * math.pi / measured.highest, 'length')} ({measured.highest_reason}): "
             "slope, curvature and contact area would grow with finer sampling, and alpha would fall. If the power law goes on "
-            f"to 1 nm, h_rms rises by {height}, which is not in its error, and beta by {beta}; the intervals allow for that."
+            f"to 1 nm, h_rms rises by {height}, which its error leaves out, and beta by {beta}, which its interval holds."
         )
     if "noise" in fit.found:
         notes.append("The spectrum flattens at short wavelengths as instrument noise does; the noise was subtracted.")
