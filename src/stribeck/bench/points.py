@@ -165,7 +165,7 @@ def _force_zeros(
     said: list[str] = []
     for file in dict.fromkeys(each for each, *_ in columns):
         own = {name: end for (each, name, _), end in zip(columns, ends, strict=True) if each == file}
-        sentence = _zero_said(own, loads[files == file])
+        sentence = _zero_sentence(own, loads[files == file])
         said.append(f"{paths[file]}: {sentence}" if len(paths) > 1 else sentence)
     one_way = [k for k, there in enumerate(both) if not there]
     if one_way and np.abs(ways).any():
@@ -179,7 +179,7 @@ def _force_zeros(
     return said, extra
 
 
-def _has_loads(loads: Array) -> bool:
+def _has_several_loads(loads: Array) -> bool:
     """Return whether passes have several loads, all known."""
     return bool(np.isfinite(loads).all() and np.ptp(loads) > SAME_SPEED * loads.max())
 
@@ -188,10 +188,13 @@ def _candidates(mine: Flags, ways: Array, loads: Array, times: Array, force: Arr
     """Return the columns of what a file may have beside the zero of its force: its drift, and a misalignment."""
     long = float(np.ptp(times[mine]))
     later = (times - times[mine].mean()) / long if long > 0 else np.zeros(len(times))
-    return [("drift", force * later), *([("misalignment", np.where(mine, ways, 0.0))] if _has_loads(loads[mine]) else [])]
+    found = [("drift", force * later)]
+    if _has_several_loads(loads[mine]):
+        found.append(("misalignment", np.where(mine, ways, 0.0)))
+    return found
 
 
-def _zero_said(found: dict[str, tuple[float, float]], loads: Array) -> str:
+def _zero_sentence(found: dict[str, tuple[float, float]], loads: Array) -> str:
     """Return the sentence on the zero of the force of a file, its drift and misalignment, each with its standard error."""
     known = bool(np.isfinite(loads).all())
     parts = []
@@ -210,7 +213,7 @@ def _zero_said(found: dict[str, tuple[float, float]], loads: Array) -> str:
             else f"it drifts by {text} from the first pass to the last"
         )
     several = ""
-    if known and not _has_loads(loads):
+    if known and not _has_several_loads(loads):
         angle = math.degrees(found["zero"][0] / float(np.median(loads)))
         several = f" (or the load is misaligned by {angle:.2g} degrees: two loads would tell)"
     return f"Both directions: {', '.join(parts)}{several}; taken off."

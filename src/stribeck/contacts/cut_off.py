@@ -104,9 +104,9 @@ def far_logarithms(by_shear: Any, by_pressure: Any, minus_log_start: Any, rise: 
     """Return both logarithms of a film that is thick at its ends, from those of a thin one, and how thin its end is."""
     # By logarithms: a film that hardly anything shears is thicker than numbers hold.
     at_shear, at_pressure = (-2.0 * (minus_log_start + each) for each in (by_shear, by_pressure))
-    sheared, pressed = (np.logaddexp(0.0, each) for each in (at_shear, at_pressure))
-    pressure = by_pressure + rise * np.exp(at_pressure - pressed) + 0.5 * pressed
-    return by_shear + 0.5 * sheared, pressure, np.exp(-pressed)
+    log_shear, log_pressure = (np.logaddexp(0.0, each) for each in (at_shear, at_pressure))
+    pressure = by_pressure + rise * np.exp(at_pressure - log_pressure) + 0.5 * log_pressure
+    return by_shear + 0.5 * log_shear, pressure, np.exp(-log_pressure)
 
 
 def friction_integral(
@@ -154,10 +154,9 @@ def far_parts(
     unit, edge = far.couette * speed, far.poiseuille * speed
     shear = (parts["J_couette"] + parts["within_couette"]) / unit + by_shear
     minus_log_start = shear + 0.5 * np.log1p(-np.exp(-2.0 * shear)) - by_shear
-    at_pressure = np.exp(-2.0 * (minus_log_start + by_pressure))
-    missed = at_pressure / (1.0 + at_pressure)
-    poiseuille = parts["J_poiseuille"] + parts["within_poiseuille"] - edge * (far.rise * missed + 0.5 * np.log1p(at_pressure))
-    at_edge = parts["within_edge"] + edge * missed if is_disc else 0.0
+    _, far_pressure, thinness = far_logarithms(by_shear, by_pressure, minus_log_start, far.rise)
+    poiseuille = parts["J_poiseuille"] + parts["within_poiseuille"] - edge * (far_pressure - by_pressure)
+    at_edge = parts["within_edge"] + edge * (1.0 - thinness) if is_disc else 0.0
     return {"J_couette": unit * minus_log_start, "J_poiseuille": poiseuille, "J_pcx": parts["J_pcx"] - at_edge}
 
 

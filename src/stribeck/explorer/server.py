@@ -192,10 +192,10 @@ STYLE = (
 @cache
 def words_page() -> str:
     """Return the page as HTML, with an anchor for each name."""
-    inputs = _joined((name, row.label, help_of(name, each)) for each, rows in FIELDS.items() for name, row in rows.items())
+    inputs = _join((name, row.label, help_of(name, each)) for each, rows in FIELDS.items() for name, row in rows.items())
     groups = {name: (row.label, help_of(name, "line")) for name, row in GROUP_FIELDS.items()}
     states = [solve(typical(geometry).contact, rtol=ROUGHLY) for geometry in FIELDS]
-    numbers = _joined((row.key, row.label, row.help) for state in states for row in state_rows(state, "balanced"))
+    numbers = _join((row.key, row.label, row.help) for state in states for row in state_rows(state, "balanced"))
     numbers |= {f"speed_factor_{name}": (label, TRANSITION_HELP) for name, label in TRANSITION_LABELS.items()}
     regimes = {name: (name, meaning) for name, meaning in MEANINGS.items()}
     lists = {name: (choice.label, help_of_choice(name, ())) for name, choice in CHOICES.items()}
@@ -209,7 +209,7 @@ def words_page() -> str:
     return f'<!doctype html><html lang="en"><head>{head}<style>{STYLE}</style></head>{body}</html>'
 
 
-def _joined(entries: Iterable[tuple[str, str, str]]) -> dict[str, tuple[str, str]]:
+def _join(entries: Iterable[tuple[str, str, str]]) -> dict[str, tuple[str, str]]:
     """Return label and words of each name, those of a ball after those of a cylinder where they differ."""
     found: dict[str, tuple[str, str]] = {}
     for name, label, words in entries:

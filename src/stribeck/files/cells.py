@@ -83,10 +83,10 @@ def _quotient(header: str) -> re.Match[str] | None:
 
 def normalised_header(header: str) -> str:
     """Return the words of a header in lower case, without its unit, what stands in brackets, and signs."""
-    return _plain(split_header(header)[0])
+    return _plain_words(split_header(header)[0])
 
 
-def _plain(words: str) -> str:
+def _plain_words(words: str) -> str:
     words = re.sub(r"\(.*?\)|\[.*?\]", " ", words)
     return " ".join(re.sub(r"[^0-9a-zµμäöüß]+", " ", words.lower().replace("η", "eta ")).split())
 
@@ -94,7 +94,7 @@ def _plain(words: str) -> str:
 def is_named(header: str, pattern: str) -> bool:
     """Return whether the words of a header match a pattern."""
     # A word before a dot, as ``DAQ.``, and the letter of the quantity behind its name, as ``speed, u``, may be left out.
-    words = (normalised_header(header), _plain(re.split(r"[.:]", split_header(header)[0])[-1]))
+    words = (normalised_header(header), _plain_words(re.split(r"[.:]", split_header(header)[0])[-1]))
     return any(re.fullmatch(pattern, each) for each in (*words, *(_LETTER.sub("", each) for each in words)))
 
 

@@ -48,7 +48,7 @@ def json_of(result: Any, names: str, **others: Any) -> dict[str, Any]:
     return {name: getattr(result, name) for name in names.split()} | others
 
 
-def _ready(method: Callable[..., dict[str, Any]]) -> Callable[..., dict[str, Any]]:
+def _prepare_for_json(method: Callable[..., dict[str, Any]]) -> Callable[..., dict[str, Any]]:
     @wraps(method)
     def to_dict(self: Any, *args: Any, **options: Any) -> dict[str, Any]:
         found: dict[str, Any] = ready_for_json(method(self, *args, **options))
@@ -68,7 +68,7 @@ class Tabled:
             if method is not None and "Returns" not in method.__doc__:
                 method.__doc__ = complete_docstring(method, {}, returns)
             if name == "to_dict" and method is not None:
-                setattr(cls, name, _ready(method))
+                setattr(cls, name, _prepare_for_json(method))
 
     def _labelled(self) -> Labelled:
         raise NotImplementedError

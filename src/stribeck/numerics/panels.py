@@ -48,7 +48,7 @@ class Rule:
     derivative: Array
     """Nodal values -> nodal values of the derivative."""
     barycentric: Array
-    """Weights of the nodes in the barycentric formula, the largest one."""
+    """Weights of the nodes in the barycentric formula, the largest of which is one."""
 
     @classmethod
     def of(cls, nodes: Array, weights: Array) -> Rule:
