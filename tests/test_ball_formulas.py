@@ -424,7 +424,7 @@ def test_the_states_of_the_fitted_laws_are_those_of_the_solver_of_today():
 def test_the_film_in_si_units_on_the_page_of_balls_is_the_formula():
     text = (Path(__file__).parents[1] / "docs" / "for_ball_on_disc.md").read_text()
     printed = next(line for line in text.splitlines() if line.startswith(r"$$h(0) = "))
-    numbers = [float(Fraction(each)) for each in re.findall(r"\d\.\d+|-?\d+/\d+", printed)]
+    numbers = [float(Fraction(each)) for each in re.findall(r"\d+\.\d+|-?\d+/\d+", printed)]
     factor, speed_power, load_power, leakage, group_power, power = numbers
     for speed in np.geomspace(1e-4, 1.0, 5):
         ball = sb.PointContact(
